@@ -77,6 +77,44 @@ impl<T: Send + 'static> Answers<T> {
     }
 }
 
+/// A question that is asked again when `K` has changed, one at a time.
+pub struct Query<K, T> {
+    /// The key that was asked last.
+    pub asked: Option<K>,
+    pub answers: Answers<T>,
+    /// The newest answer.
+    pub answer: Option<T>,
+    /// Why the last question has no answer, if so.
+    pub fault: Option<String>,
+}
+
+impl<K, T> Default for Query<K, T> {
+    fn default() -> Self {
+        Query { asked: None, answers: Answers::default(), answer: None, fault: None }
+    }
+}
+
+impl<K: PartialEq, T: Send + 'static> Query<K, T> {
+    /// Takes what has been answered. Returns whether there is a new answer.
+    pub fn follow(&mut self) -> bool {
+        let mut is_new = false;
+        while let Some(outcome) = self.answers.take() {
+            (is_new, self.fault) = (outcome.is_ok(), outcome.as_ref().err().cloned());
+            self.answer = outcome.ok().or(self.answer.take());
+        }
+        is_new
+    }
+
+    /// The right to answer, unless `key` was asked last, or the question before is open.
+    pub fn ask(&mut self, context: &Context, key: K) -> Option<Answer<T>> {
+        if self.answers.is_open() || self.asked.as_ref() == Some(&key) {
+            return None;
+        }
+        self.asked = Some(key);
+        Some(self.answers.promise(context))
+    }
+}
+
 /// The right to give an answer, which wakes the window.
 pub struct Answer<T> {
     sender: Sender<Result<T, String>>,

@@ -18,10 +18,10 @@ use eframe::egui::{
 use std::path::{Path, PathBuf};
 
 /// A size, and mine, ours and the difference, if the picture could be compared.
-type Compared<T> = Option<([u32; 2], [T; 3])>;
+type Compared = Option<([u32; 2], [Texture; 3])>;
 
 /// A picture that was checked.
-type Checked = (Answer, Compared<Vec<u8>>);
+type Checked = (Answer, Compared);
 
 /// What the middle of the window shows of the two pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -38,7 +38,7 @@ enum Side {
 pub struct Check {
     /// The picture that is checked or was checked last.
     path: Option<PathBuf>,
-    pub shown: Option<(Answer, Compared<Texture>)>,
+    pub shown: Option<Checked>,
     /// Something is to be shown that was not there before.
     has_news: bool,
     side: Side,
@@ -58,8 +58,9 @@ impl Check {
                 Ok(found) => found,
                 Err(error) => return Ok((Answer::cannot_check(&error), None)),
             };
-            let views = pictures(&mine, &finding).map(|pixels| pixels.into_iter().flatten().collect());
-            Ok((finding.answer(&mine), Some(([mine.width, mine.height], views))))
+            let size = [mine.width, mine.height];
+            let views = pictures(&mine, &finding).map(|rgb8| Texture::new(size, rgb8.as_flattened(), None));
+            Ok((finding.answer(&mine), Some((size, views))))
         };
         self.answers.ask("check", context, work);
         (self.path, self.has_news) = (Some(path.to_owned()), true);
@@ -70,14 +71,11 @@ impl Check {
     pub fn follow(&mut self, remembered: &mut Remembered) {
         if let Some(outcome) = self.answers.take() {
             let failed = |reason| (Answer::cannot_check(&anyhow::Error::msg(reason)), None);
-            let (answer, rgb8) = outcome.unwrap_or_else(failed);
-            if let Some(path) = rgb8.as_ref().and(self.path.as_ref()) {
+            let (answer, pictures) = outcome.unwrap_or_else(failed);
+            if let Some(path) = pictures.as_ref().and(self.path.as_ref()) {
                 remembered.note_recent(path);
             }
-            let textures = |(size, views): ([u32; 2], [Vec<u8>; 3])| {
-                (size, views.map(|rgb8| Texture::new(size, &rgb8, None)))
-            };
-            self.shown = Some((answer, rgb8.map(textures)));
+            self.shown = Some((answer, pictures));
             self.has_news = true;
         }
         if std::mem::take(&mut self.has_news) {
@@ -289,7 +287,10 @@ mod tests {
         check.begin(&context, &path, Some(stage));
         let checked = check.answers.wait().unwrap();
         let (size, views) = checked.as_ref().unwrap().1.as_ref().unwrap();
-        assert!(*size == [16, 9] && views[0] == rgb8, "the first picture is the reader's");
+        assert!(
+            *size == [16, 9] && views[0].colour([3, 2]) == Some([rgb8[105], rgb8[106], rgb8[107]]),
+            "the first picture is the reader's"
+        );
         check.answers.answer(&context).give(checked);
         let mut remembered = Remembered::default();
         check.follow(&mut remembered);

@@ -310,7 +310,7 @@ table! {
         on(|f| f.model.view.mode().is_some() && f.model.view.with() == With::Book),
         also("rounding f64 precision");
     ListPaths "Paths of a pixel", "Shows the paths of the pixel under the pointer, ray by ray",
-        |w, c| w.list_paths(c, w.tools.inspector.hovered), key(Key::T), line(),
+        |w, c| w.list_paths(c), key(Key::T), line(),
         off(|f| match f.no_rays() {
             Some(reason) => Some(reason.to_owned()),
             None if !is_live(f) => Some(KEPT_IS_SHOWN.to_owned()),
@@ -386,11 +386,11 @@ table! {
         on(|f| f.model.view.looked().is_some()),
         also("kept slot compare blink");
     KeptWipe "Wipe with the kept picture", "Drag a divider between it and the picture",
-        |w, _| w.compare_kept(Mode::Wipe), keys(SHIFT, Key::C), needs(has_kept, NOTHING_KEPT),
-        on(|f| f.model.view.wiped().is_some() && f.model.view.looked().is_none()),
+        |w, _| w.model.view.toggle(Mode::Wipe, With::Kept), keys(SHIFT, Key::C), needs(has_kept, NOTHING_KEPT),
+        on(|f| f.model.view.mode() == Some(Mode::Wipe) && f.model.view.compared_kept().is_some() && f.model.view.looked().is_none()),
         also("slot compare");
     KeptDifference "Difference from the kept picture", "Subtracts it from the picture",
-        |w, _| w.compare_kept(Mode::Difference), keys(SHIFT, Key::X), off(Facts::not_subtractable),
+        |w, _| w.model.view.toggle(Mode::Difference, With::Kept), keys(SHIFT, Key::X), off(Facts::not_subtractable),
         on(|f| f.model.view.mode() == Some(Mode::Difference) && f.model.view.compared_kept().is_some()),
         also("slot compare subtract");
     OnlyNoise "Is it only noise?", "Tests whether the two differ by more than chance",
@@ -418,7 +418,7 @@ table! {
         needs(|f| f.has_paths, NO_PATHS), unlisted();
     PreviousRay "Previous ray", "", |w, _| w.tools.paths.step(false), key(Key::ArrowLeft),
         needs(|f| f.has_paths, NO_PATHS), unlisted();
-    ClearPaths "Close the paths", "", |w, _| {
+    ClearPaths "Close the paths", "The path that is drawn over the picture, point by point", |w, _| {
             w.tools.paths.forget();
             w.model.remembered.dock.take_if(|dock| *dock == Dock::Path);
         }, unlisted();

@@ -1,11 +1,11 @@
 //! The dock under the picture: a path, the kept pictures, the lanes, and the error over time.
 
 use super::command::Command;
+use super::display::Tools;
 use super::facts::Facts;
 use super::kept::KeptActions;
 use super::menu::item;
-use super::model::{Dock, Model, ViewState, With};
-use super::tools::Tools;
+use super::model::{Dock, Model, ViewState};
 use super::widgets::{
     TABS, choice, command_button, command_switch, hint, panel_line, sign_button, small, tip,
 };
@@ -55,18 +55,18 @@ pub fn ui(ui: &mut Ui, model: &mut Model, tools: &mut Tools, kept: &mut KeptActi
 
 fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts) {
     let shown = &mut model.remembered.dock;
+    let tabs = [
+        (Dock::Path, "Path", Command::ClearPaths),
+        (Dock::Kept, "Kept pictures", Command::KeptDock),
+        (Dock::Lanes, "Lanes", Command::LanesDock),
+        (Dock::Error, "Error", Command::ErrorDock),
+    ];
     let left = |ui: &mut Ui| {
         ui.spacing_mut().item_spacing.x = 16.0;
-        for (tab, name, help) in [
-            (Dock::Path, "Path", "The path that is drawn over the picture, point by point"),
-            (Dock::Kept, "Kept pictures", Command::KeptDock.help()),
-            (Dock::Lanes, "Lanes", Command::LanesDock.help()),
-            (Dock::Error, "Error", Command::ErrorDock.help()),
-        ] {
-            let is_there = tab != Dock::Path || dock == tab || facts.has_paths;
-            if is_there {
+        for (tab, name, command) in tabs {
+            if tab != Dock::Path || dock == tab || facts.has_paths {
                 let response = super::widgets::tab(ui, name, dock == tab);
-                if tip(ui, response, help, None).clicked() {
+                if tip(ui, response, command.help(), None).clicked() {
                     *shown = Some(tab);
                 }
             }
@@ -75,12 +75,7 @@ fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts) {
     let right = |ui: &mut Ui| {
         let close = sign_button(ui, "×", 24.0, "Close dock");
         if tip(ui, close, "Closes the dock (Escape)", None).clicked() {
-            facts.send(match dock {
-                Dock::Path => Command::ClearPaths,
-                Dock::Kept => Command::KeptDock,
-                Dock::Lanes => Command::LanesDock,
-                Dock::Error => Command::ErrorDock,
-            });
+            tabs.iter().filter(|(tab, ..)| *tab == dock).for_each(|(.., command)| facts.send(*command));
         }
     };
     Sides::new().height(TABS).shrink_left().show(ui, left, right);
@@ -127,11 +122,11 @@ fn kept_ui(ui: &mut Ui, model: &mut Model, kept: &mut KeptActions, facts: &Facts
 
 fn card(ui: &mut Ui, place: usize, view: &mut ViewState, facts: &Facts) {
     let Some(kept) = view.kept.get(place).cloned() else { return };
-    let (is_chosen, title) = (view.kept.chosen() == Some(place), view.kept.title(place));
+    let (is_chosen, title) = (view.kept.chosen() == Some(place), view.kept.title(&kept));
     let layout = Layout::top_down(Align::Min);
     let added = ui.allocate_ui_with_layout(vec2(PICTURE.x + 16.0, CARD), layout, |ui| {
         ui.spacing_mut().item_spacing.y = 4.0;
-        let picture = Image::new(kept.thumbnail(ui.ctx())).fit_to_exact_size(PICTURE);
+        let picture = Image::new(&kept.thumbnail).fit_to_exact_size(PICTURE);
         let button = choice(ui, is_chosen, (Atom::grow(), picture, Atom::grow()));
         let response = ui.add(button.min_size(PICTURE + vec2(16.0, 8.0)));
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &title));
@@ -141,9 +136,7 @@ fn card(ui: &mut Ui, place: usize, view: &mut ViewState, facts: &Facts) {
     let response = added.inner;
     if response.double_clicked() {
         view.look(place);
-    } else if response.clicked() {
-        choose(view, place);
-    } else if response.secondary_clicked() {
+    } else if response.clicked() || response.secondary_clicked() {
         view.kept.choose(place);
     }
     response.context_menu(|ui| MENU.iter().for_each(|command| _ = item(ui, facts, *command)));
@@ -151,15 +144,4 @@ fn card(ui: &mut Ui, place: usize, view: &mut ViewState, facts: &Facts) {
     let title = kept.document.title();
     let help = format!("{title}, {samples} samples per pixel, {width} × {height}, {memory}");
     tip(ui, response, &help, None);
-}
-
-/// Chooses a picture. If another one is shown or compared with, this one takes its place.
-fn choose(view: &mut ViewState, place: usize) {
-    view.kept.choose(place);
-    match (view.compared_kept(), view.mode()) {
-        (Some(compared), _) if compared == place => {}
-        (Some(_), _) if view.looked().is_some() => view.look(place),
-        (Some(_), Some(mode)) => view.toggle(mode, With::Kept(place)),
-        _ => {}
-    }
 }

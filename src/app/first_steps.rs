@@ -7,7 +7,7 @@ use super::widgets::{command_button, primary, sign_button, tip};
 use crate::stages::Stage;
 use eframe::egui::{self, Frame, Label, Margin, RichText, Sides, Stroke, Ui};
 
-/// Narrower cards have a step on each line, points.
+/// Narrower cards are higher, points.
 const THREE_COLUMNS: f32 = 620.0;
 
 const STEPS: [&str; 3] = [
@@ -60,17 +60,9 @@ fn content(ui: &mut Ui, has_columns: bool, facts: &Facts) {
             }
         },
     );
-    if has_columns {
-        ui.columns(STEPS.len(), |uis| {
-            for (number, ui) in uis.iter_mut().enumerate() {
-                step(ui, number);
-            }
-        });
-    } else {
-        ui.spacing_mut().item_spacing.y = 4.0;
-        (0..STEPS.len()).for_each(|number| step(ui, number));
-        ui.add_space(4.0);
-    }
+    ui.columns(STEPS.len(), |uis| {
+        uis.iter_mut().enumerate().for_each(|(number, ui)| step(ui, number));
+    });
     ui.horizontal(|ui| {
         if let Some(first) = Stage::ALL.first() {
             let response = ui.add(primary(format!("Start the book at {}", first.section)));

@@ -40,31 +40,25 @@ impl FrameLog {
     /// A frame begins; the one before took `times`.
     pub fn frame(&mut self, times: FrameTimes) {
         let now = Instant::now();
-        if let Some(last) = self.last {
-            let [cpu, ui, picture] = [times.cpu, times.ui, times.picture].map(milliseconds);
-            self.line(format_args!(
-                "frame,{:.3},{:.3},{cpu:.3},{ui:.3},{picture:.3}",
-                milliseconds(now - self.start),
-                milliseconds(now - last)
-            ));
+        if let Some(last) = self.last.replace(now) {
+            let [apart, cpu, ui, picture] =
+                [now - last, times.cpu, times.ui, times.picture].map(milliseconds);
+            self.line("frame", &format!("{apart:.3},{cpu:.3},{ui:.3},{picture:.3}"));
         }
-        self.last = Some(now);
     }
 
     /// Logs a command.
     pub fn command(&mut self, name: &str) {
-        let since_start = milliseconds(self.start.elapsed());
-        self.line(format_args!("command,{since_start:.3},{name}"));
+        self.line("command", name);
         let _ = self.file.flush();
     }
 
     /// Logs that a backend has added samples to a render, once for each backend.
     pub fn tracing(&mut self, run: u64, backend: &str) {
-        let is_news = self.tracing.as_ref().is_none_or(|(old, name)| (*old, name.as_str()) != (run, backend));
-        if is_news {
-            self.tracing = Some((run, backend.to_owned()));
-            let since_start = milliseconds(self.start.elapsed());
-            self.line(format_args!("tracing,{since_start:.3},{run},{backend}"));
+        let tracing = Some((run, backend.to_owned()));
+        if self.tracing != tracing {
+            self.tracing = tracing;
+            self.line("tracing", &format!("{run},{backend}"));
             let _ = self.file.flush();
         }
     }
@@ -78,14 +72,13 @@ impl FrameLog {
     pub fn pictured(&mut self, begun: Instant) {
         let shown = self.changes.partition_point(|change| *change <= begun);
         for change in self.changes.drain(..shown).collect::<Vec<_>>() {
-            let since_start = milliseconds(self.start.elapsed());
-            self.line(format_args!("latency,{since_start:.3},{:.3}", milliseconds(change.elapsed())));
+            self.line("latency", &format!("{:.3}", milliseconds(change.elapsed())));
         }
     }
 
     /// Writes a line. Errors are ignored, because a failed log should not disturb the user.
-    fn line(&mut self, line: std::fmt::Arguments<'_>) {
-        let _ = writeln!(self.file, "{line}");
+    fn line(&mut self, kind: &str, values: &str) {
+        let _ = writeln!(self.file, "{kind},{:.3},{values}", milliseconds(self.start.elapsed()));
     }
 }
 

@@ -1,7 +1,8 @@
 //! The pixel inspector: value, error, and the surface under the pointer.
 
+use super::answers::Query;
 use super::model::Document;
-use super::subject::{PictureId, Query, Subject};
+use super::subject::{PictureId, Subject};
 use super::theme;
 use super::widgets::{compact, hint, tip};
 use crate::backends::layers::Layer;
@@ -28,15 +29,12 @@ pub struct Pixel {
     pub error: Option<[f64; 3]>,
     /// The 8-bit values in the picture.
     pub bytes: [u8; 3],
-    /// Samples in the pixel.
-    pub samples: u64,
 }
 
 /// The pixel under the pointer and what is known about it.
 #[derive(Default)]
 pub struct Inspector {
     pub hovered: Option<[u32; 2]>,
-    pub pixel: Option<Pixel>,
     /// By pixel, film and number of samples.
     query: Query<([u32; 2], PictureId, u64), Pixel>,
 }
@@ -49,6 +47,11 @@ impl Inspector {
         }
     }
 
+    /// What is known about the pixel.
+    pub fn pixel(&self) -> Option<&Pixel> {
+        self.query.answer.as_ref()
+    }
+
     /// Forgets the pixel, because the picture has changed.
     pub fn forget(&mut self) {
         *self = Inspector { hovered: self.hovered, ..Inspector::default() };
@@ -57,11 +60,11 @@ impl Inspector {
     /// Takes the film's answer and queries the film again if there may be news. If the film is gone or has no samples,
     /// the last known pixel stays.
     pub fn follow(&mut self, subject: &Subject<'_>, context: &egui::Context) {
-        self.pixel = self.query.take().or(self.pixel.take());
+        self.query.follow();
         let (document, main) = (subject.document, &subject.tracing.main);
         let Some(at) = self.hovered.filter(|_| main.is_full(document)) else { return };
         let (key, transfer) = ((at, subject.id(), main.shown_samples()), document.rules().transfer);
-        self.query.ask(context, subject, key, move |film| {
+        subject.ask(context, &mut self.query, key, move |film| {
             let [x, y] = at;
             if x >= film.width() || y >= film.height() || film.sample_count() == 0 {
                 return None;
@@ -69,8 +72,7 @@ impl Inspector {
             let index = y as usize * film.width() as usize + x as usize;
             let mean = film.mean(index);
             let bytes = mean.map(|v| to_byte(v, transfer, y as usize, film.height() as usize));
-            let (error, samples) = (standard_error(film, index), film.sample_count());
-            Some(Pixel { at, mean, error, bytes, samples })
+            Some(Pixel { at, mean, error: standard_error(film, index), bytes })
         });
     }
 
@@ -86,7 +88,7 @@ impl Inspector {
         ui.spacing_mut().item_spacing.y = 0.0;
         // The header and four rows, so that what is above stays where it is.
         ui.set_min_height(24.0 + 4.0 * ROW * TextStyle::Small.resolve(ui.style()).size);
-        let Some(pixel) = &self.pixel else {
+        let Some(pixel) = self.pixel() else {
             ui.horizontal(|ui| ui.label(RichText::new("Pixel").strong()));
             hint(ui, "Point at the picture to read its numbers.");
             return;
@@ -204,7 +206,7 @@ mod tests {
     #[test]
     fn a_difference_tells_both_sides() {
         let document = Document::new(Origin::new(Recipe::builtin("three-spheres").unwrap(), Source::Builtin));
-        let pixel = Pixel { at: [0, 0], mean: [0.5, 0.25, 1.0], error: None, bytes: [0; 3], samples: 1 };
+        let pixel = Pixel { at: [0, 0], mean: [0.5, 0.25, 1.0], error: None, bytes: [0; 3] };
         let other = [0.25, 0.5, 1.0];
         let harness = Harness::new_ui(|ui| pixel_ui(&document, &pixel, None, Some(other), ui));
         let labels = harness.get_all_by_role(egui::accesskit::Role::Label);

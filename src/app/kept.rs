@@ -1,7 +1,7 @@
 //! Keeping pictures, and the question whether a kept one and the traced one differ only by noise: the statistics of
 //! `weekender compare`, on a thread. The list of kept pictures is in the model.
 
-use super::answers::Answers;
+use super::answers::{Answers, Query};
 use super::model::{Document, Kept};
 use super::theme;
 use super::tracer::Tracer;
@@ -28,10 +28,10 @@ impl KeptActions {
         }
         self.is_wanted = false;
         let (document, answer) = (document.clone(), self.copied.promise(context));
-        let seconds = tracing.seconds();
+        let (seconds, context) = (tracing.seconds(), context.clone());
         tracing.main.inspect(move |film| {
             let copy = film.try_copy().map_err(|error| error.to_string());
-            answer.give_from("keep", move || copy.map(|film| Kept::new(document, film, seconds)));
+            answer.give_from("keep", move || copy.map(|film| Kept::new(&context, document, film, seconds)));
         });
     }
 }
@@ -46,47 +46,35 @@ pub struct Answer {
     pub words: String,
 }
 
-/// The answer about a kept picture, or that it is awaited.
+/// The answer about a kept picture and a run of the render, or that it is awaited.
 #[derive(Default)]
-pub struct Verdict {
-    /// The kept picture and the run of the render that it is compared with.
-    of: Option<(u64, u64)>,
-    /// None until it is there; else the answer, or why there is none.
-    pub answer: Option<Result<Answer, String>>,
-    answers: Answers<Answer>,
-}
+pub struct Verdict(pub Query<(u64, u64), Answer>);
 
 impl Verdict {
     /// Compares a kept picture with the one that `main` traces for `live`. An earlier question is forgotten.
     pub fn ask(&mut self, context: &Context, kept: &Arc<Kept>, (live, main): (&Document, &Tracer)) {
-        let of = Some((kept.number, main.status().run));
-        *self = Verdict { of, ..Verdict::default() };
+        *self = Verdict::default();
+        let Some(answer) = self.0.ask(context, (kept.number, main.status().run)) else { return };
         let (kept, recipe) = (Arc::clone(kept), live.recipe());
-        let answer = self.answers.promise(context);
         main.inspect(move |film| match film.try_copy() {
             Ok(film) => answer.give_from("compare", move || compared(&kept, recipe, film)),
             Err(error) => answer.give(Err(error.to_string())),
         });
     }
 
-    /// Takes the answer.
-    pub fn receive(&mut self) {
-        self.answer = self.answers.take().or(self.answer.take());
-    }
-
     /// Draws the answer, if it is about this kept picture and this run. Returns whether it is.
     pub fn ui(&self, ui: &mut Ui, kept: u64, run: u64) -> bool {
-        if self.of != Some((kept, run)) {
+        if self.0.asked != Some((kept, run)) {
             return false;
         }
         let colours = theme::colours(ui);
-        let (color, headline, words) = match &self.answer {
-            None => (colours.weak, "Comparing\u{2026}", ""),
-            Some(Err(reason)) => (colours.bad, "Not compared:", reason.as_str()),
-            Some(Ok(Answer { is_equal, headline, words })) => {
+        let (color, headline, words) = match &self.0 {
+            Query { fault: Some(reason), .. } => (colours.bad, "Not compared:", reason.as_str()),
+            Query { answer: Some(Answer { is_equal, headline, words }), .. } => {
                 let color = if *is_equal { colours.good } else { colours.warn };
                 (color, *headline, words.as_str())
             }
+            _ => (colours.weak, "Comparing\u{2026}", ""),
         };
         ui.label(RichText::new(headline).small().color(color));
         ui.label(RichText::new(words).small());

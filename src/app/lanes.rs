@@ -1,7 +1,7 @@
 //! What the lanes of a core do over time, with and without refill: a row per lane, a column per step. The paths are the
 //! tracer's.
 
-use super::answers::Answers;
+use super::answers::Query;
 use super::facts::Facts;
 use super::model::{Device, Document, best_isa};
 use super::theme;
@@ -24,11 +24,8 @@ const HEADING: f32 = 24.0;
 /// The timelines without and with refill, recorded by a background thread while they are shown.
 #[derive(Default)]
 pub struct Lanes {
-    /// The document and the number of lanes that were asked for last.
-    asked: Option<(Document, usize)>,
-    /// None until they are recorded; else the timelines, or why there are none.
-    traced: Option<Result<[Timeline; 2], String>>,
-    answers: Answers<[Timeline; 2]>,
+    /// By document and number of lanes.
+    query: Query<(Document, usize), [Timeline; 2]>,
 }
 
 impl Lanes {
@@ -40,20 +37,15 @@ impl Lanes {
         lanes: Option<usize>,
         is_moving: bool,
     ) {
-        self.traced = self.answers.take().or(self.traced.take());
+        self.query.follow();
         let Some(lanes) = lanes else {
             *self = Lanes::default();
             return;
         };
-        let is_same = |(of, count): &(Document, usize)| *count == lanes && of.has_same_film(document);
-        if is_moving || self.asked.as_ref().is_some_and(is_same) {
-            return;
-        }
         // An invalid document is reported elsewhere.
-        let Ok(job) = document.job(1) else { return };
-        // Those of before stay until the new ones are there; a late answer is lost with its slot.
-        (self.asked, self.answers) = (Some((document.clone(), lanes)), Answers::default());
-        let record = move || {
+        let Some(job) = document.job(1).ok().filter(|_| !is_moving) else { return };
+        let Some(answer) = self.query.ask(context, (document.clone(), lanes)) else { return };
+        answer.give_from("lanes", move || {
             let recorder = PathRecorder::new(&job, best_isa(), None);
             let size = [job.settings().width, job.settings().height];
             let paths_of = |lane: usize| -> Vec<_> {
@@ -62,19 +54,18 @@ impl Lanes {
             };
             let paths: Vec<_> = (0..lanes).map(paths_of).collect();
             Ok([false, true].map(|refill| timeline(job.scene(), &paths, refill)))
-        };
-        self.answers.ask("lanes", context, record);
+        });
     }
 
     pub fn ui(&self, ui: &mut Ui, facts: &Facts) {
         let is_one_ray = facts.no_rays().is_some() || facts.document().rules().shading != Shading::Path;
-        let empty = match (facts.model.remembered.device, &self.traced) {
+        let empty = match (facts.model.remembered.device, &self.query) {
             (Device::Gpu, _) => "The graphics card has its own lanes. Choose CPU to see them.",
             (Device::Reference, _) => "The reference traces one ray at a time. Choose CPU to see lanes.",
             _ if is_one_ray => "In this stage each path is one ray, so no lane waits.",
-            (_, None) => "Recording paths\u{2026}",
-            (_, Some(Err(reason))) => reason,
-            (_, Some(Ok(timelines))) => return timelines_ui(ui, timelines),
+            (_, Query { fault: Some(reason), .. }) => reason,
+            (_, Query { answer: Some(timelines), .. }) => return timelines_ui(ui, timelines),
+            _ => "Recording paths\u{2026}",
         };
         hint(ui, empty);
     }
@@ -149,18 +140,18 @@ mod tests {
         document.set_size([32, 18]);
         lanes.follow(&context, &document, None, false);
         lanes.follow(&context, &document, Some(4), true);
-        assert!(lanes.asked.is_none(), "they are not shown, or something is moving");
+        assert!(lanes.query.asked.is_none(), "they are not shown, or something is moving");
         lanes.follow(&context, &document, Some(4), false);
-        assert!(lanes.traced.is_none());
-        lanes.traced = lanes.answers.wait();
-        let [without, with] = lanes.traced.as_ref().unwrap().as_ref().unwrap().each_ref().map(Timeline::len);
+        assert!(lanes.query.answer.is_none());
+        lanes.query.answer = lanes.query.answers.wait().and_then(Result::ok);
+        let [without, with] = lanes.query.answer.as_ref().unwrap().each_ref().map(Timeline::len);
         assert!(without >= with && with >= SAMPLES as usize, "{without} {with}");
         lanes.follow(&context, &document, Some(4), false);
-        assert!(lanes.answers.take().is_none(), "nothing has changed");
+        assert!(!lanes.query.answers.is_open(), "nothing has changed");
         document.settings.seed += 1;
         lanes.follow(&context, &document, Some(4), false);
-        assert!(lanes.answers.wait().is_some_and(|traced| traced.is_ok()), "another picture");
+        assert!(lanes.query.answers.wait().is_some_and(|traced| traced.is_ok()), "another picture");
         lanes.follow(&context, &document, None, false);
-        assert!(lanes.traced.is_none() && lanes.asked.is_none());
+        assert!(lanes.query.answer.is_none() && lanes.query.asked.is_none());
     }
 }

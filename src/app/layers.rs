@@ -19,9 +19,6 @@ const SAMPLES: u64 = 16;
 /// Largest number of pixels in the coarse layer, which has one sample each.
 const COARSE_PIXELS: u32 = 20_000;
 
-/// A layer that was traced, or nothing more.
-type Traced = Option<(LayerImage, Vec<u8>, u32)>;
-
 /// What was ordered last.
 struct Ordered {
     layer: Layer,
@@ -42,7 +39,8 @@ pub struct ShownLayer {
 /// The layer that is displayed.
 #[derive(Default)]
 pub struct Layers {
-    traced: Answers<Traced>,
+    /// A layer that was traced, or nothing more.
+    traced: Answers<Option<ShownLayer>>,
     /// What traces paths, with the hierarchy of the last scene. Orders wait for it.
     recorder: Arc<Mutex<Option<PathRecorder>>>,
     ordered: Option<Ordered>,
@@ -77,11 +75,7 @@ impl Layers {
             // After a failure, the next one need not wait for this one.
             ordered.is_pictured = true;
             match outcome {
-                Ok(Some((image, rgb8, divisor))) => {
-                    let earlier = self.shown.take().map(|shown| shown.texture);
-                    let texture = Texture::new([image.width, image.height], &rgb8, earlier);
-                    self.shown = Some(ShownLayer { texture, divisor, layer: ordered.layer, image });
-                }
+                Ok(Some(shown)) => self.shown = Some(shown),
                 Ok(None) => {}
                 Err(reason) => fault = Some(reason),
             }
@@ -111,7 +105,8 @@ impl Layers {
             let job = layer.job(&job)?;
             trace(layer, &job, &mut recorder, &cancel, |image, divisor| {
                 let rgb8 = coloured(layer, image, job.rules().transfer);
-                answer.give_one(Ok(Some((image.clone(), rgb8, divisor))));
+                let texture = Texture::new([image.width, image.height], &rgb8, None);
+                answer.give_one(Ok(Some(ShownLayer { texture, divisor, layer, image: image.clone() })));
             })?;
             Ok(None)
         };

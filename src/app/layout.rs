@@ -96,7 +96,8 @@ impl Window {
         if facts.model.shows(Tab::Check)
             && let Some(room) = self.tools.check.picture(ui)
         {
-            return Touch { room: Some(room), ..Touch::default() };
+            self.display.viewport.room = Some(room);
+            return Touch::default();
         }
         if facts.model.presentation.is_some() {
             let context = ui.ctx().clone();
@@ -107,10 +108,10 @@ impl Window {
 
     fn picture(&mut self, ui: &mut Ui, facts: &Facts) -> Touch {
         let Window { model, tracing, display, tools, .. } = self;
-        let Model { document, view, .. } = model;
+        let Model { document, view, selected, .. } = model;
         let layer = view.show().layer();
         let shown = tracing.main.shown();
-        let is_scaled = view.wiped().is_some_and(|kept| kept.size() != facts.document().size());
+        let is_scaled = view.compared_kept().is_some_and(|kept| kept.size() != facts.document().size());
         let pictures = Pictures {
             main: match layer.and_then(|layer| display.layers.shown(layer)) {
                 Some(layer) => Some((&layer.texture, layer.divisor > 1)),
@@ -122,14 +123,15 @@ impl Window {
             paths: &tools.paths,
             values: &display.values,
         };
-        let handles = (&mut document.camera, &mut view.divider);
+        let handles = (&mut document.camera, &mut view.divider, selected);
         display.viewport.ui(ui, handles, pictures, facts)
     }
 
     /// Does what the pointer did in the picture.
     fn take_touch(&mut self, ui: &Ui, touch: Touch, facts: &Facts) {
+        let room = self.display.viewport.room;
         if facts.model.presentation.is_some()
-            && let (Some(room), Some(at)) = (touch.room, ui.input(|input| input.pointer.hover_pos()))
+            && let (Some(room), Some(at)) = (room, ui.input(|input| input.pointer.hover_pos()))
             && touch.hovered.is_some()
         {
             let Window { display, tracing, tools, .. } = self;
@@ -138,17 +140,13 @@ impl Window {
             });
         }
         self.tools.inspector.hover(touch.hovered);
-        self.list_paths(ui.ctx(), touch.listed);
         if let Some(said) = touch.said {
             self.shell.toasts.good(said);
         }
         if touch.is_move {
             self.changes.note_move();
         }
-        if let Some(sphere) = touch.select {
-            self.model.selected = sphere;
-        }
-        if let Some(room) = touch.room {
+        if let Some(room) = room {
             self.shell.toasts.ui(ui, room, &mut self.commands);
         }
     }
@@ -158,7 +156,7 @@ impl Window {
 fn titles(facts: &Facts, second: &Second) -> [String; 2] {
     let view = &facts.model.view;
     let other = match view.compared_kept() {
-        Some(place) => Some(view.kept.title(place)),
+        Some(kept) => Some(view.kept.title(kept)),
         None => second.shown(view).map(|shown| shown.document.title()),
     };
     [other.unwrap_or_default(), facts.document().title()]
@@ -167,12 +165,11 @@ fn titles(facts: &Facts, second: &Second) -> [String; 2] {
 /// The numbers of the pixel under the pointer.
 fn numbers(ui: &mut Ui, facts: &Facts, display: &Display, second: &Second, inspector: &Inspector) {
     let view = &facts.model.view;
-    let at = inspector.pixel.as_ref().map(|pixel| pixel.at);
+    let at = inspector.pixel().map(|pixel| pixel.at);
     let value = at.filter(|_| view.show().layer().is_some()).and_then(|at| display.layers.value_at(at));
     let size = facts.document().size();
-    let other = at.and_then(|at| match view.wiped() {
-        Some(kept) => kept.means.mean(at_same_place(at, [size, kept.size()])),
-        None => second.film.as_ref()?.mean(at),
-    });
+    let other = at
+        .zip(second.means(view))
+        .and_then(|(at, means)| means.mean(at_same_place(at, [size, [means.width, means.height]])));
     inspector.ui(ui, facts.document(), value, other);
 }

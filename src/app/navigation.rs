@@ -42,17 +42,9 @@ pub fn orbit_above_ground(camera: &Camera, pivot: DVec3, right: f64, up: f64, sc
         let low = |height: f64| height.min(floor) - 1e-6 * floor;
         heights.iter().all(|(sphere, height)| clearance(sphere, moved.look_from) >= low(*height))
     };
-    let turned = |share: f64| orbit(camera, pivot, right, share * up);
-    if is_above(&turned(1.0)) {
-        return turned(1.0);
-    }
-    let [low, _] = (0..16).fold([0.0, 1.0], |[low, high], _| {
-        let middle = 0.5 * (low + high);
-        if is_above(&turned(middle)) { [middle, high] } else { [low, middle] }
-    });
-    // Where the ground curves up, a little higher.
-    let raised = [0.005, 0.02, 0.05].map(|rise| orbit(camera, pivot, right, rise));
-    std::iter::once(turned(low)).chain(raised).find(is_above).unwrap_or(*camera)
+    // As far up as possible, or where the ground curves up, a little higher.
+    let ups = [1.0, 0.5, 0.25, 0.125, 0.0].map(|share| share * up).into_iter().chain([0.005, 0.02, 0.05]);
+    ups.map(|up| orbit(camera, pivot, right, up)).find(is_above).unwrap_or(*camera)
 }
 
 /// Moves along the line through `point`, which stays where it is in the picture: to `factor` times its distance. The

@@ -192,12 +192,6 @@ impl Window {
         self.model.view.toggle(mode, if is_by_book { With::Book } else { With::Stage });
     }
 
-    pub(super) fn compare_kept(&mut self, mode: Mode) {
-        if let Some(place) = self.model.view.kept.chosen() {
-            self.model.view.toggle(mode, With::Kept(place));
-        }
-    }
-
     /// Leaves views and comparisons that the picture of now cannot have.
     pub(super) fn leave_useless_views(&mut self) {
         let show = self.model.view.show();
@@ -237,8 +231,8 @@ impl Window {
         }
     }
 
-    pub(super) fn list_paths(&mut self, context: &Context, pixel: Option<[u32; 2]>) {
-        if let Some(pixel) = pixel {
+    pub(super) fn list_paths(&mut self, context: &Context) {
+        if let Some(pixel) = self.tools.inspector.hovered {
             self.tools.paths.list(&self.model.document, pixel, context);
             self.model.remembered.dock = Some(Dock::Path);
         }
@@ -282,8 +276,12 @@ impl Window {
 
     pub(super) fn toggle_presentation(&mut self, context: &Context) {
         match self.model.presentation.take() {
-            Some(presentation) => self.fill_screen(context, presentation.was_full_screen),
+            Some(presentation) => {
+                self.display.viewport.placement = self.display.viewport.parked.clone();
+                self.fill_screen(context, presentation.was_full_screen);
+            }
             None => {
+                self.display.viewport.parked = self.display.viewport.placement.clone();
                 let was_full_screen = self.model.is_full_screen;
                 self.model.presentation =
                     Some(Presentation { was_full_screen, has_captions: true, is_blank: false });

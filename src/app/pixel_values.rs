@@ -1,6 +1,7 @@
 //! The numbers of pixels, drawn in them when they are large.
 
-use super::subject::{PictureId, Query, Subject};
+use super::answers::Query;
+use super::subject::{PictureId, Subject};
 use super::widgets::compact;
 use eframe::egui::{self, Align2, Color32, Rect, TextStyle, Ui, vec2};
 
@@ -18,7 +19,6 @@ struct Part {
 /// The numbers of the visible pixels.
 #[derive(Default)]
 pub struct PixelValues {
-    part: Option<Part>,
     /// By film, samples and pixels.
     query: Query<(PictureId, u64, [[u32; 2]; 2]), Part>,
 }
@@ -27,13 +27,14 @@ impl PixelValues {
     /// Takes the film's answer, and asks again if other pixels are visible or have changed. The picture is drawn at `rect`;
     /// `area` is the viewport.
     pub fn follow(&mut self, subject: &Subject<'_>, rect: Rect, area: Option<Rect>, context: &egui::Context) {
-        self.part = self.query.take().or(self.part.take());
+        self.query.follow();
         let visible = area.and_then(|area| visible(rect, area, subject.document.size()));
         let Some([first, end]) = visible.filter(|_| subject.has_samples()) else {
             *self = PixelValues::default();
             return;
         };
-        self.query.ask(context, subject, (subject.id(), subject.samples(), [first, end]), move |film| {
+        let key = (subject.id(), subject.samples(), [first, end]);
+        subject.ask(context, &mut self.query, key, move |film| {
             let means = (first[1]..end[1].min(film.height()))
                 .flat_map(|y| (first[0]..end[0].min(film.width())).map(move |x| [x, y]))
                 .map(|[x, y]| film.mean(y as usize * film.width() as usize + x as usize))
@@ -51,7 +52,9 @@ impl PixelValues {
         size: [u32; 2],
         colour: impl Fn([u32; 2]) -> Option<[u8; 3]>,
     ) {
-        let Some(part) = self.part.as_ref().filter(|_| visible(rect, clip, size).is_some()) else { return };
+        let Some(part) = self.query.answer.as_ref().filter(|_| visible(rect, clip, size).is_some()) else {
+            return;
+        };
         let side = rect.width() / size[0] as f32;
         let painter = ui.painter().with_clip_rect(clip);
         let font = TextStyle::Small.resolve(ui.style());
@@ -77,11 +80,7 @@ impl PixelValues {
 
 /// Black or white, whichever contrasts more with an sRGB colour (WCAG 2).
 fn readable_on(ground: [u8; 3]) -> Color32 {
-    let [r, g, b] = ground.map(|byte| {
-        let value = f64::from(byte) / 255.0;
-        if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
-    });
-    let luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    let luminance = egui::Rgba::from(Color32::from_rgb(ground[0], ground[1], ground[2])).intensity();
     // The contrast is (brighter + 0.05) / (darker + 0.05).
     if (luminance + 0.05).powi(2) > 1.05 * 0.05 { Color32::BLACK } else { Color32::WHITE }
 }

@@ -10,7 +10,7 @@ use crate::progressive::Phase;
 use crate::stages::Stage;
 use eframe::egui::{
     self, Align, Align2, Color32, Context, CursorIcon, FontFamily, FontId, Frame, Label, Layout, Margin,
-    Panel, Pos2, Rect, RichText, Role, Sense, Style, TextStyle, Ui, WidgetInfo, vec2,
+    Panel, Pos2, Rect, RichText, Role, Sense, Sides, Style, TextStyle, Ui, WidgetInfo, vec2,
 };
 
 /// Text sizes in hundredths of the height: the largest that has room is used.
@@ -113,23 +113,25 @@ pub fn blank(context: &Context) {
 
 fn title(ui: &mut Ui, unit: f32, facts: &Facts) {
     let (colours, stage) = (theme::colours(ui), facts.document().stage());
-    if let Some(stage) = stage {
-        ui.label(RichText::new(stage.section).size(4.5 * unit).color(colours.accent));
-        ui.add_space(unit);
-    }
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+    let place = |stage: &Stage| {
+        let place = Stage::walk().take_while(|other| other.index() <= stage.index()).count();
+        format!("{place} of {}", Stage::walk().count())
+    };
+    let left = |ui: &mut Ui| {
+        let mut title = facts.document().title();
         if let Some(stage) = stage {
-            let place = Stage::walk().take_while(|other| other.index() <= stage.index()).count();
-            let place = format!("{place} of {}", Stage::walk().count());
-            ui.label(RichText::new(place).size(2.25 * unit).color(colours.weak));
-        }
-        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            ui.label(RichText::new(stage.section).size(4.5 * unit).color(colours.accent));
+            ui.add_space(unit);
             let changed = if facts.document().has_changed_scene() { ", changed" } else { "" };
-            let title =
-                stage.map_or_else(|| facts.document().title(), |stage| format!("{}{changed}", stage.title));
-            ui.add(Label::new(RichText::new(title).size(4.5 * unit).color(colours.strong)).truncate());
-        });
-    });
+            title = format!("{}{changed}", stage.title);
+        }
+        ui.add(Label::new(RichText::new(title).size(4.5 * unit).color(colours.strong)).truncate());
+    };
+    let right = |ui: &mut Ui| {
+        let place = stage.map(place).unwrap_or_default();
+        ui.label(RichText::new(place).size(2.25 * unit).color(colours.weak));
+    };
+    Sides::new().shrink_left().show(ui, left, right);
 }
 
 /// The headings and texts below the picture.

@@ -44,7 +44,7 @@ impl Window {
                 Err(reason) => self.shell.toasts.bad(format!("Not kept: {reason}")),
             }
         }
-        self.display.kept.verdict.receive();
+        self.display.kept.verdict.0.follow();
         while let Some(outcome) = self.files.resumed.take() {
             match outcome {
                 Ok(resumed) => self.go_on(resumed),
@@ -104,7 +104,7 @@ impl Window {
     }
 
     fn add_kept(&mut self, kept: Kept) {
-        let place = self.model.view.kept.add(kept);
+        let place = self.model.view.keep(kept);
         if self.model.remembered.dock.is_none() {
             self.model.remembered.dock = Some(Dock::Kept);
         }

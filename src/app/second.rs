@@ -12,104 +12,107 @@ use std::sync::Arc;
 /// The second picture.
 #[derive(Default)]
 pub struct Second {
-    /// `None` until a second picture is needed.
+    /// `None` until another picture is traced.
     tracer: Option<Tracer>,
+    /// What was traced last.
     pub of: Option<(Other, Arc<Origin>)>,
-    /// The picture, if it was kept.
-    picture: KeptPicture,
     /// Its film when it was last read.
-    pub film: Option<Arc<ReferenceMeans>>,
-    films: Answers<(Arc<Origin>, Arc<ReferenceMeans>)>,
+    film: Option<Arc<ReferenceMeans>>,
+    films: Answers<Arc<ReferenceMeans>>,
+    /// Kept pictures by number and view, which a thread makes. All stay, so that a flip between two does not flicker.
+    resolved: Vec<(u64, View, Shown)>,
+    /// The kept picture, the view, and three bytes per pixel.
+    resolving: Answers<(Arc<Kept>, View, Vec<u8>)>,
 }
 
 impl Second {
     /// The newest second picture.
     pub fn shown(&self, view: &ViewState) -> Option<&Shown> {
         match view.compared_kept() {
-            Some(place) => self.picture.shown(view.kept.get(place)?),
+            Some(kept) => {
+                let resolved = self.resolved.iter().find(|(number, ..)| *number == kept.number);
+                resolved.map(|(_, _, shown)| shown)
+            }
             None => self.tracer.as_ref().and_then(Tracer::shown),
         }
     }
 
+    /// The film of the second picture, if it is known.
+    pub fn means<'a>(&'a self, view: &'a ViewState) -> Option<&'a Arc<ReferenceMeans>> {
+        view.compared_kept().map(|kept| &kept.means).or(self.film.as_ref())
+    }
+
     pub fn pause(&self) {
-        self.tracer.iter().for_each(Tracer::pause);
+        self.tracer.iter().for_each(|tracer| tracer.progressive.pause());
     }
 
     pub fn resume(&self) {
-        self.tracer.iter().for_each(Tracer::resume);
+        self.tracer.iter().for_each(|tracer| tracer.progressive.resume());
     }
 
-    /// Takes the film if it has been read.
-    pub fn receive(&mut self) {
-        while let Some(Ok((origin, film))) = self.films.take() {
-            if self.of.as_ref().is_some_and(|(_, of)| Arc::ptr_eq(of, &origin)) {
-                self.film = Some(film);
-            }
-        }
-    }
-
-    /// Renders the second picture, if one is needed; `want` is what the main picture renders. Returns whether one is
-    /// needed.
+    /// Makes the second picture, if one is needed; `want` is what the main picture renders. Returns whether there is one.
     pub fn follow(&mut self, context: &Context, view: &ViewState, want: &Want<'_>) -> bool {
-        let Some(other) = view.compared(want.document) else {
-            if let Some(tracer) = &mut self.tracer {
-                tracer.abandon();
-            }
-            self.film = None;
-            // A kept picture may have been deleted.
-            self.of = self.of.take().filter(|(other, _)| !matches!(other, Other::Kept(_)));
-            return false;
-        };
-        if let Other::Kept(kept) = other {
-            self.follow_kept(context, view, kept);
-            return true;
+        if let Some(Ok(film)) = self.films.take() {
+            self.film = Some(film);
         }
+        let other = view.compared(want.document);
+        if other.is_none() || view.mode() != Some(Mode::Difference) {
+            self.film = None;
+        }
+        let Some(other) = other else {
+            self.tracer.iter_mut().for_each(Tracer::abandon);
+            self.follow_kept(context, view);
+            return view.compared_kept().is_some();
+        };
         let document = self.document_of(other, want.document);
         if self.tracer.is_none() {
             // Without a thread there is no second picture, but everything else works.
             self.tracer = Tracer::new().ok();
-            if let Some(tracer) = &self.tracer {
-                tracer.wake(context);
-            }
+            self.tracer.iter().for_each(|tracer| tracer.wake(context));
         }
         let Some(tracer) = &mut self.tracer else { return false };
         let is_new = tracer.poll(context).is_some();
         // Both pictures have the same stop condition, so that they do not differ in their noise.
-        let stop = document.stop;
-        let is_possible =
-            tracer.want(&Want { document: &document, stop, view: view.tone.of_picture(), ..*want }).is_ok();
-        let is_full = tracer.is_full(&document);
-        let has_picture = tracer.has_picture(&document);
-        let is_waiting = self.films.is_open();
-        if view.mode() != Some(Mode::Difference) {
-            self.film = None;
-        } else if is_full && has_picture && !is_waiting && (is_new || self.film.is_none()) {
-            let (answer, origin) = (self.films.answer(context), Arc::clone(&document.origin));
-            tracer.inspect(move |film| {
-                answer.give(Ok((origin, Arc::new(ReferenceMeans::of(film)))));
-            });
+        let (stop, tone) = (document.stop, view.tone.of_picture());
+        let outcome = tracer.want(&Want { document: &document, stop, view: tone, ..*want });
+        let is_due = view.mode() == Some(Mode::Difference) && (is_new || self.film.is_none());
+        let has_film = tracer.is_full(&document) && tracer.has_picture(&document);
+        if is_due && has_film && !self.films.is_open() {
+            let answer = self.films.answer(context);
+            tracer.inspect(move |film| answer.give(Ok(Arc::new(ReferenceMeans::of(film)))));
         }
-        is_possible
+        outcome.is_ok()
     }
 
-    /// Shows a picture that was kept.
-    fn follow_kept(&mut self, context: &Context, view: &ViewState, kept: Arc<Kept>) {
-        if let Some(tracer) = &mut self.tracer {
-            tracer.abandon();
+    /// Takes kept pictures that were made, and has the shown one made in another view.
+    fn follow_kept(&mut self, context: &Context, view: &ViewState) {
+        while let Some(Ok((of, in_view, rgb8))) = self.resolving.take() {
+            let place = self.resolved.iter().position(|(number, ..)| *number == of.number);
+            let earlier = place.map(|place| self.resolved.swap_remove(place).2.texture);
+            let texture = Texture::new(of.size(), &rgb8, earlier);
+            let document = of.document.clone();
+            let shown = Shown { texture, samples: of.samples(), divisor: 1, document, run: 0 };
+            self.resolved.push((of.number, in_view, shown));
         }
-        self.picture.resolved.retain(|(number, ..)| view.kept.iter().any(|kept| kept.number == *number));
-        self.picture.follow(context, &kept, &view.tone.of_picture());
-        self.film = (view.mode() == Some(Mode::Difference)).then(|| Arc::clone(&kept.means));
-        let origin = Arc::clone(&kept.document.origin);
-        self.of = Some((Other::Kept(kept), origin));
+        self.resolved.retain(|(number, ..)| view.kept.iter().any(|kept| kept.number == *number));
+        let (Some(kept), in_view) = (view.compared_kept(), view.tone.of_picture()) else { return };
+        let is_known = |(number, of, _): &(u64, View, Shown)| *number == kept.number && of.is_same(&in_view);
+        if !self.resolving.is_open() && !self.resolved.iter().any(is_known) {
+            let kept = Arc::clone(kept);
+            self.resolving.ask("kept", context, move || {
+                let rgb8 = in_view.resolve(&kept.film, kept.document.rules().transfer, None);
+                Ok((kept, in_view, rgb8))
+            });
+        }
     }
 
     fn document_of(&mut self, other: Other, mine: &Document) -> Document {
-        if self.of.as_ref().is_none_or(|(kept, _)| *kept != other) {
-            (self.of, self.film) = (None, None);
+        if self.of.as_ref().is_some_and(|(before, _)| *before != other) {
+            // A late answer about the film of before is lost with its slot.
+            (self.of, self.film, self.films) = (None, None, Answers::default());
         }
         let (_, origin) = self.of.get_or_insert_with(|| {
-            let origin = other.origin();
+            let origin = Arc::new(other.origin());
             (other, origin)
         });
         let (theirs, base) = (&origin.recipe, &mine.origin.recipe);
@@ -124,43 +127,6 @@ impl Second {
     }
 }
 
-/// The pictures of kept films, resolved on a thread. All stay, so that a flip between two does not flicker.
-#[derive(Default)]
-struct KeptPicture {
-    /// The number of the kept picture, the view, and its picture.
-    resolved: Vec<(u64, View, Shown)>,
-    /// The kept picture, the view, and three bytes per pixel.
-    answers: Answers<(Arc<Kept>, View, Vec<u8>)>,
-}
-
-impl KeptPicture {
-    /// The newest picture of `kept`.
-    fn shown(&self, kept: &Kept) -> Option<&Shown> {
-        self.resolved.iter().find(|(of, ..)| *of == kept.number).map(|(_, _, shown)| shown)
-    }
-
-    /// Takes the picture that was resolved, and has the film resolved in `view` if that is another one.
-    fn follow(&mut self, context: &Context, kept: &Arc<Kept>, view: &View) {
-        while let Some(Ok((of, view, rgb8))) = self.answers.take() {
-            let place = self.resolved.iter().position(|(number, ..)| *number == of.number);
-            let earlier = place.map(|place| self.resolved.swap_remove(place).2.texture);
-            let texture = Texture::new(of.size(), &rgb8, earlier);
-            let document = of.document.clone();
-            let shown = Shown { texture, samples: of.samples(), divisor: 1, document, run: 0 };
-            self.resolved.push((of.number, view, shown));
-        }
-        let is_known = |(of, in_view, _): &(u64, View, Shown)| *of == kept.number && in_view.is_same(view);
-        if self.answers.is_open() || self.resolved.iter().any(is_known) {
-            return;
-        }
-        let (kept, view) = (Arc::clone(kept), view.clone());
-        self.answers.ask("kept", context, move || {
-            let rgb8 = view.resolve(&kept.film, kept.document.rules().transfer, None);
-            Ok((kept, view, rgb8))
-        });
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -171,18 +137,12 @@ mod tests {
     #[test]
     fn a_film_is_taken_only_for_the_picture_that_is_compared() {
         let (mut second, context) = (Second::default(), Context::default());
-        let stage = &Stage::ALL[0];
-        let [mine, other] = [(); 2].map(|()| Arc::new(Origin::of_stage(stage)));
-        let film = || ReferenceMeans { width: 1, height: 1, means: vec![[0.5; 3]] };
-        let answer = |second: &mut Second, origin: &Arc<Origin>| {
-            second.films.answer(&context).give(Ok((Arc::clone(origin), Arc::new(film()))));
-            second.receive();
-            second.film.as_ref().is_some()
-        };
-        assert!(!answer(&mut second, &mine), "the comparison is over");
-        second.of = Some((Other::Stage(stage), Arc::clone(&mine)));
-        assert!(!answer(&mut second, &other), "another picture is compared by now");
-        assert!(answer(&mut second, &mine));
+        let mine = Document::new(Origin::of_stage(&Stage::ALL[0]));
+        second.document_of(Other::Stage(&Stage::ALL[0]), &mine);
+        let late = second.films.answer(&context);
+        second.document_of(Other::Stage(&Stage::ALL[1]), &mine);
+        late.give(Ok(Arc::new(ReferenceMeans { width: 1, height: 1, means: vec![[0.5; 3]] })));
+        assert!(second.films.take().is_none(), "another picture is compared by now");
     }
 
     #[test]

@@ -108,7 +108,7 @@ mod tests {
         other.choose(if view.show() == Show::Normals { Show::Albedo } else { Show::Normals });
         assert!(!sight.lasts(&document, &other));
         let mut other = view.clone();
-        other.toggle(Mode::Difference, With::Kept(0));
+        other.toggle(Mode::Difference, With::Kept);
         assert!(!sight.lasts(&document, &other));
         let mut other = view.clone();
         other.look(0);

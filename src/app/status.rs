@@ -2,7 +2,7 @@
 
 use super::command::Command;
 use super::facts::Facts;
-use super::prediction::prediction;
+use super::plot::prediction;
 use super::spheres;
 use super::theme;
 use super::widgets::{command_button, compact, small, tip};
@@ -101,8 +101,8 @@ pub fn sentence(facts: &Facts) -> String {
         return format!("Not rendered: {reason}");
     }
     let view = &facts.model.view;
-    if let Some((place, kept)) = view.looked().zip(view.wiped()) {
-        let (title, samples) = (view.kept.title(place), grouped(kept.samples()));
+    if let Some(kept) = view.looked().and_then(|place| view.kept.get(place)) {
+        let (title, samples) = (view.kept.title(kept), grouped(kept.samples()));
         return format!("Kept {title}, {samples} samples per pixel. Escape returns to the picture");
     }
     if let Some(checked) = &facts.checked {

@@ -1,9 +1,10 @@
 //! What is shown of the picture and how bright, and the histogram.
 
+use super::answers::Query;
 use super::command::Command;
 use super::facts::Facts;
 use super::model::{Channel, Show, Tone, ViewState};
-use super::subject::{PictureId, Query, Subject};
+use super::subject::{PictureId, Subject};
 use super::theme;
 use super::widgets::{
     About, Header, Number, add_command, compact, entry, fold, hint, list, row, small, switch, tip,
@@ -20,7 +21,6 @@ const HEIGHT: f32 = 72.0;
 #[derive(Default)]
 pub struct ToneUi {
     is_open: bool,
-    histogram: Option<Histogram>,
     /// By film, white, and how often its samples have doubled.
     query: Query<(PictureId, f64, u32), Histogram>,
 }
@@ -28,14 +28,14 @@ pub struct ToneUi {
 impl ToneUi {
     /// Takes the film's answer, and asks again if the picture has changed.
     pub fn follow(&mut self, subject: &Subject<'_>, white: f64, context: &egui::Context) {
-        self.histogram = self.query.take().or(self.histogram.take());
+        self.query.follow();
         if !self.is_open || !subject.has_samples() {
             return;
         }
         // Counting takes the tracer's time.
         let doublings = subject.samples().ilog2();
         let key = (subject.id(), white, doublings);
-        self.query.ask(context, subject, key, move |film| Some(Histogram::of(film, white)));
+        subject.ask(context, &mut self.query, key, move |film| Some(Histogram::of(film, white)));
     }
 
     /// Draws what is shown and how bright, and the histogram.
@@ -66,7 +66,7 @@ impl ToneUi {
             add_command(ui, facts, Command::Denoise, denoise);
             let reason = facts.no_exposure();
             brightness_ui(ui, &mut view.tone, reason.as_deref());
-            match &self.histogram {
+            match &self.query.answer {
                 Some(histogram) => paint(ui, histogram, view.tone.exposure),
                 None => _ = hint(ui, if facts.is_working() { "Counting…" } else { "No samples yet" }),
             }

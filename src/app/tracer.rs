@@ -1,7 +1,7 @@
 //! The window's side of a progressive render: what is wanted, what is running, and the newest picture as a texture.
 
 use super::model::Document;
-use super::preview::{Preview, Previews};
+use super::preview::{Previews, samples_of};
 use super::texture::Texture;
 use crate::backends::BackendChoice;
 use crate::film::Film;
@@ -43,20 +43,22 @@ pub struct Want<'a> {
 }
 
 impl Want<'_> {
-    fn plan(&self, is_held: bool, preview: Preview) -> Plan {
+    fn plan(&self, is_held: bool, divisor: u32) -> Plan {
         let pass_target = if self.is_moving { MOVING_PASS } else { STILL_PASS };
         let mut stop = self.stop;
         if is_held {
             stop.samples = Some(stop.samples.map_or(PAUSED_SAMPLES, |samples| samples.min(PAUSED_SAMPLES)));
         }
-        let preview = (preview.divisor > 1).then_some(preview.samples);
+        let preview = (divisor > 1).then(|| samples_of(self.document, divisor));
         Plan { pass_target, preview, ..Plan::until(stop) }
     }
 }
 
-struct Started {
+/// A render that was started.
+pub struct Started {
     document: Document,
-    preview: Preview,
+    /// 1, or the factor by which a preview is smaller.
+    divisor: u32,
     run: u64,
     at: Instant,
     is_pictured: bool,
@@ -80,7 +82,7 @@ pub struct Shown {
 
 /// A render thread and its latest results.
 pub struct Tracer {
-    progressive: Progressive,
+    pub progressive: Progressive,
     started: Option<Started>,
     shown: Option<Shown>,
     status: Arc<Status>,
@@ -126,16 +128,14 @@ impl Tracer {
         self.shown.as_ref().filter(|shown| shown.run == self.status.run).map_or(0, |shown| shown.samples)
     }
 
-    /// Whether the current film is the full-size film of the document.
-    pub fn is_full(&self, document: &Document) -> bool {
-        self.started
-            .as_ref()
-            .is_some_and(|run| run.preview.divisor == 1 && run.document.has_same_film(document))
+    /// The current run, if its film is the document's, at any size.
+    pub fn run_of(&self, document: &Document) -> Option<&Started> {
+        self.started.as_ref().filter(|run| run.document.has_same_film(document))
     }
 
-    /// Whether the current film is the document's, at any size.
-    pub fn is_of(&self, document: &Document) -> bool {
-        self.started.as_ref().is_some_and(|run| run.document.has_same_film(document))
+    /// Whether the current film is the full-size film of the document.
+    pub fn is_full(&self, document: &Document) -> bool {
+        self.run_of(document).is_some_and(|run| run.divisor == 1)
     }
 
     /// Whether there is a picture of the document, at any size.
@@ -145,7 +145,7 @@ impl Tracer {
 
     /// Whether the render is a preview.
     pub fn is_coarse(&self) -> bool {
-        self.started.as_ref().is_some_and(|run| run.preview.divisor > 1)
+        self.started.as_ref().is_some_and(|run| run.divisor > 1)
     }
 
     /// Whether the render began during a pause that lasts.
@@ -178,14 +178,6 @@ impl Tracer {
         self.progressive.inspect(look);
     }
 
-    pub fn pause(&self) {
-        self.progressive.pause();
-    }
-
-    pub fn resume(&self) {
-        self.progressive.resume();
-    }
-
     /// Discards the film; the next request starts a new one.
     pub fn restart(&mut self) {
         self.started = None;
@@ -202,14 +194,14 @@ impl Tracer {
     /// Continues a film of `document`.
     pub fn go_on_with(&mut self, film: Film, want: &Want<'_>) -> Result<(), String> {
         self.look(&want.view);
-        self.start(want, Preview::NONE, Some(film))
+        self.start(want, 1, Some(film))
     }
 
     /// Takes new results. For a new picture, returns the time at which its render began.
     pub fn poll(&mut self, context: &egui::Context) -> Option<Instant> {
         self.status = Arc::new(self.progressive.status());
         let started = self.started.as_mut()?;
-        if started.preview.divisor == 1 {
+        if started.divisor == 1 {
             self.previews.note_speed(&self.status);
         }
         let mut pictured = None;
@@ -219,23 +211,26 @@ impl Tracer {
             self.shown = Some(Shown {
                 texture: Texture::new([picture.width, picture.height], &picture.rgb8, earlier),
                 samples: picture.samples_per_pixel,
-                divisor: started.preview.divisor,
+                divisor: started.divisor,
                 document: started.document.clone(),
                 run: started.run,
             });
-            if !started.is_pictured && (self.previews.is_moving() || started.preview.divisor > 1) {
+            if !started.is_pictured && (self.previews.moving.is_some() || started.divisor > 1) {
                 let samples = picture.samples_per_pixel as f64;
                 let samples = samples * f64::from(picture.width) * f64::from(picture.height);
                 let seconds = started.at.elapsed().as_secs_f64();
-                self.previews.pictured(&started.document, started.preview.divisor, samples, seconds);
+                self.previews.pictured(&started.document, started.divisor, samples, seconds);
             }
             started.is_pictured = true;
             pictured = Some(started.at);
         }
         let (age, is_pictured) = (started.at.elapsed(), started.is_pictured);
         // After many samples, the picture changes slowly.
-        let interval =
-            if self.previews.is_moving() { Duration::ZERO } else { (age / 20).min(PICTURE_INTERVAL_LIMIT) };
+        let interval = if self.previews.moving.is_some() {
+            Duration::ZERO
+        } else {
+            (age / 20).min(PICTURE_INTERVAL_LIMIT)
+        };
         if (self.asked.elapsed() >= interval || !is_pictured) && !self.is_confetti() {
             self.progressive.ask_for_picture();
             self.asked = Instant::now();
@@ -250,7 +245,7 @@ impl Tracer {
     fn is_confetti(&self) -> bool {
         let Some(started) = &self.started else { return false };
         let is_preview = |shown: &Shown| shown.divisor > 1 && shown.document.has_same_film(&started.document);
-        started.preview.divisor == 1
+        started.divisor == 1
             && self.status.phase.is_working()
             && self.status.samples_per_pixel < CLEARER_SAMPLES
             && started.at.elapsed() < PREVIEW_LIMIT
@@ -263,14 +258,13 @@ impl Tracer {
     /// Why the document cannot be rendered; the current render continues.
     pub fn want(&mut self, want: &Want<'_>) -> Result<(), String> {
         self.look(&want.view);
-        let preview = if want.is_moving {
+        let divisor = if want.is_moving {
             self.previews.follow_move(want.document)
         } else {
-            self.previews.end_move();
+            self.previews.moving = None;
             self.still(want)
         };
-        let mine = self.started.as_ref().filter(|run| run.document.has_same_film(want.document));
-        if mine.is_some_and(|run| run.preview.divisor <= preview.divisor) {
+        if self.run_of(want.document).is_some_and(|run| run.divisor <= divisor) {
             self.adjust(want);
             return Ok(());
         }
@@ -279,35 +273,34 @@ impl Tracer {
         if want.is_moving && is_unseen && self.status.phase.is_working() {
             return Ok(());
         }
-        self.start(want, preview, None)
+        self.start(want, divisor, None)
     }
 
     /// What to render of a picture that does not move. Previews are for the CPU: a GPU is fast or has to compile first.
-    fn still(&self, want: &Want<'_>) -> Preview {
+    fn still(&self, want: &Want<'_>) -> u32 {
         let is_cpu = matches!(want.backend, BackendChoice::Cpu(_) | BackendChoice::Reference { .. });
-        let mine = self.started.as_ref().filter(|run| run.document.has_same_film(want.document));
         // The same picture at another size is on the screen already.
         let is_there = |shown: &Shown| shown.document.is_same_at_another_size(want.document);
-        match mine {
-            Some(run) if run.preview.divisor == 1 => Preview::NONE,
-            Some(run) if !run.is_pictured && self.status.phase.is_working() => run.preview,
-            Some(run) if is_cpu => self.previews.look(want.document, Some(run.preview.divisor)),
+        match self.run_of(want.document) {
+            Some(run) if run.divisor == 1 => 1,
+            Some(run) if !run.is_pictured && self.status.phase.is_working() => run.divisor,
+            Some(run) if is_cpu => self.previews.look(want.document, Some(run.divisor)),
             None if is_cpu && !self.shown.as_ref().is_some_and(is_there) => {
                 self.previews.look(want.document, None)
             }
-            _ => Preview::NONE,
+            _ => 1,
         }
     }
 
-    fn start(&mut self, want: &Want<'_>, preview: Preview, film: Option<Film>) -> Result<(), String> {
-        let job = want.document.job(preview.divisor).map_err(|error| error.to_string())?;
-        let plan = want.plan(want.is_paused, preview);
+    fn start(&mut self, want: &Want<'_>, divisor: u32, film: Option<Film>) -> Result<(), String> {
+        let job = want.document.job(divisor).map_err(|error| error.to_string())?;
+        let plan = want.plan(want.is_paused, divisor);
         let request = RenderRequest { film, ..RenderRequest::new(job, want.backend.clone(), plan.clone()) };
         self.progressive.start(request);
         self.status = Arc::new(self.progressive.status());
         self.started = Some(Started {
             document: want.document.clone(),
-            preview,
+            divisor,
             run: self.status.run,
             at: Instant::now(),
             is_pictured: false,
@@ -324,7 +317,7 @@ impl Tracer {
     fn adjust(&mut self, want: &Want<'_>) {
         let Some(run) = &mut self.started else { return };
         run.is_held &= want.is_paused;
-        let plan = want.plan(run.is_held, run.preview);
+        let plan = want.plan(run.is_held, run.divisor);
         let Some((sent_backend, sent_plan)) = &mut self.sent else { return };
         if sent_backend != want.backend {
             sent_backend.clone_from(want.backend);
@@ -348,17 +341,17 @@ mod tests {
     fn passes_are_short_while_something_moves_and_few_during_a_pause() {
         let document = Document::new(Origin::usual());
         let backend = BackendChoice::Cpu(CpuOptions::default());
-        let plan = |stop, is_moving, is_held, preview| {
+        let plan = |stop, is_moving, is_held, divisor| {
             let view = View::Picture;
             Want { document: &document, backend: &backend, stop, view, is_moving, is_paused: false }
-                .plan(is_held, preview)
+                .plan(is_held, divisor)
         };
         let stop = Stop::at_samples(100);
-        let still = plan(stop, false, false, Preview::NONE);
+        let still = plan(stop, false, false, 1);
         assert_eq!((still.pass_target, still.stop, still.preview), (Duration::from_millis(40), stop, None));
-        let moving = plan(stop, true, false, Preview { divisor: 2, samples: 4 });
+        let moving = plan(stop, true, false, 2);
         assert_eq!((moving.pass_target, moving.preview), (Duration::from_millis(10), Some(4)));
-        let held = |stop| plan(stop, false, true, Preview::NONE).stop.samples;
+        let held = |stop| plan(stop, false, true, 1).stop.samples;
         assert_eq!([stop, Stop::at_samples(3), Stop::default()].map(held), [Some(8), Some(3), Some(8)]);
     }
 
@@ -391,8 +384,8 @@ mod tests {
         let want = wish(&document, &backend, false);
         for is_pictured in [false, true] {
             let mut tracer = Tracer::new().unwrap();
-            tracer.start(&want, Preview { divisor: 2, samples: 4 }, None).unwrap();
-            assert!(tracer.is_of(&document) && !tracer.is_full(&document));
+            tracer.start(&want, 2, None).unwrap();
+            assert!(tracer.run_of(&document).is_some() && !tracer.is_full(&document));
             tracer.started.as_mut().unwrap().is_pictured = is_pictured;
             tracer.want(&want).unwrap();
             assert_eq!(tracer.is_full(&document), is_pictured);
@@ -401,7 +394,7 @@ mod tests {
             tracer.want(&want).unwrap();
             assert_eq!(tracer.status().run, run);
             tracer.restart();
-            assert!(!tracer.is_of(&document));
+            assert!(!tracer.run_of(&document).is_some());
             tracer.want(&want).unwrap();
             assert_eq!((tracer.status().run, tracer.is_full(&document)), (run + 1, true), "it begins anew");
         }
@@ -435,6 +428,6 @@ mod tests {
         let reason = tracer.want(&wish(&invalid, &backend, false)).unwrap_err();
         assert!(reason.contains("width"), "{reason}");
         assert_eq!(tracer.status().run, run);
-        assert!(tracer.is_of(&document) && !tracer.is_of(&invalid));
+        assert!(tracer.run_of(&document).is_some() && !tracer.run_of(&invalid).is_some());
     }
 }

@@ -1,9 +1,8 @@
 //! What traces: the render on the screen, the one that it is compared with, and their size.
 
 use super::changes::Changes;
-use super::model::{Device, Model, Sizing};
+use super::model::{Device, Document, Model, Sizing};
 use super::second::Second;
-use super::sizer::{Present, Sizer};
 use super::toasts::Toasts;
 use super::tracer::{Tracer, Want};
 use crate::film::Film;
@@ -13,6 +12,12 @@ use std::time::{Duration, Instant};
 
 /// Longer than the time between two pictures.
 const PICTURES_APART: Duration = Duration::from_millis(300);
+
+/// A new size counts once it has stayed the same for so long: a window that is resized has many sizes.
+const SETTLE: Duration = Duration::from_millis(250);
+
+/// A picture that was traced for longer than this many seconds is kept.
+const LONG_SECONDS: f64 = 10.0;
 
 pub struct Tracing {
     pub main: Tracer,
@@ -46,7 +51,6 @@ impl Tracing {
 
     /// Takes what was traced. Returns when the pictured run began, if there is a new picture.
     pub fn poll(&mut self, context: &Context) -> Option<Instant> {
-        self.second.receive();
         self.main.poll(context)
     }
 
@@ -61,14 +65,14 @@ impl Tracing {
     }
 
     pub fn pause(&mut self, context: &Context) {
-        self.main.pause();
+        self.main.progressive.pause();
         self.second.pause();
         // The picture of the last samples is still to come.
         context.request_repaint_after(PICTURES_APART);
     }
 
     pub fn resume(&mut self) {
-        self.main.resume();
+        self.main.progressive.resume();
         self.second.resume();
     }
 
@@ -78,20 +82,21 @@ impl Tracing {
         self.main.restart();
     }
 
-    /// Gives the document the size that fits the window, if its samples are not worth more.
+    /// Gives the document the size that fits the window, if its samples are not worth more or needed.
     pub fn follow_size(&mut self, context: &Context, model: &mut Model, room: [u32; 2], is_needed: bool) {
         if self.film.is_some() {
             return;
         }
         let is_presented = model.presentation.is_some();
-        let present = Present {
-            is_documents: self.main.is_of(&model.document),
+        let seconds = match self.seconds() {
+            _ if is_needed => f64::INFINITY,
             // A presentation begins with a picture of its own size, whatever that costs.
-            seconds: if is_presented { 0.0 } else { self.seconds().unwrap_or(f64::INFINITY) },
-            is_needed,
+            _ if is_presented => 0.0,
+            seconds => seconds.unwrap_or(f64::INFINITY),
         };
+        let lost = self.main.run_of(&model.document).map(|_| seconds);
         let sizing = if is_presented { Sizing::Viewport } else { model.remembered.sizing };
-        self.sizer.follow(context, &mut model.document, (sizing, room), &present);
+        self.sizer.follow(context, &mut model.document, (sizing, room), lost);
     }
 
     /// Traces what the model asks for. Returns whether there is a picture to compare with, if one is asked for.
@@ -101,7 +106,7 @@ impl Tracing {
             document,
             backend: &model.backend(),
             stop: document.stop,
-            view: view.of_shown(self.main.status().run, self.second.film.as_ref()),
+            view: view.of_film(self.main.status().run, self.second.means(view)),
             is_moving: changes.is_moving(),
             is_paused: *is_paused,
         };
@@ -146,10 +151,71 @@ fn device_after(chosen: Device, seen: usize, status: &Status) -> (Device, usize)
         _ => (chosen, status.given_up.len()),
     }
 }
+
+/// Follows the size of the viewport.
+#[derive(Default)]
+pub struct Sizer {
+    /// The size that fits, and since when.
+    fitting: Option<([u32; 2], Instant)>,
+    is_asked: bool,
+    /// A large size that the user wants.
+    pub accepted: Option<[u32; 2]>,
+    /// The size at which the picture could be rendered anew, if it is only scaled.
+    pub offer: Option<[u32; 2]>,
+}
+
+impl Sizer {
+    /// The user wants the size that the picture should have, whatever is lost.
+    pub fn ask(&mut self) {
+        self.is_asked = true;
+    }
+
+    /// Changes the size of the document if it should have another one. `room` is the room for the picture, pixels of
+    /// the screen; `lost` is how many seconds the document's own picture was traced, if there is one.
+    pub fn follow(
+        &mut self,
+        context: &Context,
+        document: &mut Document,
+        (sizing, room): (Sizing, [u32; 2]),
+        lost: Option<f64>,
+    ) {
+        let is_asked = std::mem::take(&mut self.is_asked);
+        self.offer = None;
+        let Some(wanted) = document.fitting_size(sizing, room) else { return };
+        let now = Instant::now();
+        let since = match self.fitting {
+            Some((fitting, since)) if fitting == wanted => since,
+            _ => now,
+        };
+        self.fitting = Some((wanted, since));
+        if wanted == document.size() {
+            return;
+        }
+        // The book's size changes only when the user chooses it or another picture.
+        let Some(seconds) = lost.filter(|_| !is_asked && sizing != Sizing::Book) else {
+            document.set_size(wanted);
+            return;
+        };
+        let settled = now.duration_since(since);
+        if settled < SETTLE {
+            context.request_repaint_after(SETTLE - settled);
+        } else if seconds > LONG_SECONDS {
+            // Also while a button of the mouse is down, which may be pressing the offer.
+            self.offer = Some(wanted);
+        } else if context.input(|input| input.pointer.any_down()) {
+            context.request_repaint_after(SETTLE);
+        } else {
+            document.set_size(wanted);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::model::Origin;
     use crate::job::render::BackendInfo;
+    use crate::stages::Stage;
 
     #[test]
     fn only_a_failure_of_the_chosen_device_changes_the_choice() {
@@ -165,5 +231,39 @@ mod tests {
         assert_eq!(device_after(gpu, 0, &status("cpu", &["gpu"])), (cpu, 1));
         assert_eq!(device_after(gpu, 1, &status("cpu", &["gpu"])), (gpu, 1), "it is tried again");
         assert_eq!(device_after(cpu, 0, &status("cpu", &["cpu"])), (cpu, 0), "its plainer code goes on");
+    }
+
+    const YOUNG: Option<f64> = Some(2.0);
+
+    fn ago(seconds: u64) -> Instant {
+        Instant::now().checked_sub(Duration::from_secs(seconds)).unwrap()
+    }
+
+    /// The size after a frame with a room of 320 by 9000 pixels, of a picture that has had another size.
+    fn followed(sizer: &mut Sizer, sizing: Sizing, lost: Option<f64>) -> [u32; 2] {
+        let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        document.set_size([160, 90]);
+        sizer.follow(&Context::default(), &mut document, (sizing, [320, 9000]), lost);
+        document.size()
+    }
+
+    #[test]
+    fn a_size_is_followed_once_it_has_stayed_the_same() {
+        let settled = |size| Sizer { fitting: Some((size, ago(1))), ..Sizer::default() };
+        for (size, expected) in [([320, 180], [320, 180]), ([300, 169], [160, 90])] {
+            let mut sizer = settled(size);
+            assert_eq!(followed(&mut sizer, Sizing::Viewport, YOUNG), expected, "{size:?} has fitted");
+            assert_eq!(sizer.fitting.unwrap().0, [320, 180]);
+            assert_eq!(sizer.offer, None);
+        }
+        let mut sizer = settled([320, 180]);
+        sizer.offer = Some([1, 1]);
+        let old = Some(99.0);
+        assert_eq!(followed(&mut sizer, Sizing::Viewport, old), [160, 90]);
+        assert_eq!(sizer.offer, Some([320, 180]));
+        sizer.ask();
+        assert_eq!(followed(&mut sizer, Sizing::Viewport, old), [320, 180], "whatever is lost");
+        assert_eq!(sizer.offer, None);
+        assert_eq!(followed(&mut sizer, Sizing::Viewport, old), [160, 90], "once");
     }
 }

@@ -129,11 +129,11 @@ impl Ask for Window {
     }
 
     fn only_noise(&self) -> Option<Result<(&str, &str), &str>> {
-        let answer = self.display.kept.verdict.answer.as_ref()?;
-        Some(match answer {
-            Ok(answer) => Ok((answer.headline, answer.words.as_str())),
-            Err(reason) => Err(reason.as_str()),
-        })
+        let verdict = &self.display.kept.verdict.0;
+        match (&verdict.fault, &verdict.answer) {
+            (Some(reason), _) => Some(Err(reason)),
+            (None, answer) => answer.as_ref().map(|answer| Ok((answer.headline, answer.words.as_str()))),
+        }
     }
 
     fn disabled_reason(&self, command: Command) -> Option<String> {
@@ -153,12 +153,13 @@ impl Ask for Window {
     }
 
     fn has_other_picture(&self) -> bool {
-        let (second, wanted) = (&self.tracing.second, self.model.view.compared(self.shown_document()));
-        match (wanted, &second.of, second.shown(&self.model.view)) {
-            (Some(wanted), Some((other, origin)), Some(shown)) => {
+        let (second, view) = (&self.tracing.second, &self.model.view);
+        let Some(shown) = second.shown(view) else { return false };
+        match (view.compared(self.shown_document()), &second.of) {
+            (Some(wanted), Some((other, origin))) => {
                 wanted == *other && std::sync::Arc::ptr_eq(origin, &shown.document.origin)
             }
-            _ => false,
+            _ => view.compared_kept().is_some(),
         }
     }
 
@@ -184,7 +185,7 @@ impl Ask for Window {
     }
 
     fn inspected(&self) -> Option<([u32; 2], [f64; 3])> {
-        self.tools.inspector.pixel.as_ref().map(|pixel| (pixel.at, pixel.mean))
+        self.tools.inspector.pixel().map(|pixel| (pixel.at, pixel.mean))
     }
 
     fn is_presenting(&self) -> bool {

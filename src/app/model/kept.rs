@@ -5,20 +5,22 @@ use crate::film::Film;
 use crate::progressive::ReferenceMeans;
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureOptions};
 use image::{RgbImage, imageops};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, OnceLock};
 
 /// The longer side of a small copy, pixels.
 const SMALL: u32 = 264;
 
 /// A small copy of the picture of a film.
-fn small_copy(film: &Film, document: &Document) -> ColorImage {
+fn small_copy(context: &Context, film: &Film, document: &Document) -> TextureHandle {
     let (width, height) = (film.width(), film.height());
     let rgb8 = film.to_rgb8(document.rules().transfer);
     let full = RgbImage::from_raw(width, height, rgb8).unwrap_or_default();
     let scale = (f64::from(SMALL) / f64::from(width.max(height))).min(1.0);
     let [width, height] = [width, height].map(|side| ((f64::from(side) * scale).round() as u32).max(1));
-    ColorImage::from_rgb([width as usize, height as usize], &imageops::thumbnail(&full, width, height))
+    let small = imageops::thumbnail(&full, width, height);
+    let small = ColorImage::from_rgb([width as usize, height as usize], &small);
+    context.load_texture("kept", small, TextureOptions::LINEAR)
 }
 
 /// A picture that was kept. It never changes.
@@ -33,35 +35,22 @@ pub struct Kept {
     pub seconds: Option<f64>,
     /// Its picture to subtract from another.
     pub means: Arc<ReferenceMeans>,
-    small: ColorImage,
-    texture: OnceLock<TextureHandle>,
-}
-
-impl std::fmt::Debug for Kept {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(formatter, "Kept {}", self.number)
-    }
+    /// A small picture of it.
+    pub thumbnail: TextureHandle,
 }
 
 impl Kept {
     /// Keeps a film of `document` that has samples.
-    pub fn new(document: Document, film: Film, seconds: Option<f64>) -> Self {
+    pub fn new(context: &Context, document: Document, film: Film, seconds: Option<f64>) -> Self {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         Kept {
             number: COUNT.fetch_add(1, Ordering::Relaxed),
-            small: small_copy(&film, &document),
+            thumbnail: small_copy(context, &film, &document),
             means: Arc::new(ReferenceMeans::of(&film)),
             document,
             film: Arc::new(film),
             seconds,
-            texture: OnceLock::new(),
         }
-    }
-
-    /// A small picture of it.
-    pub fn thumbnail(&self, context: &Context) -> &TextureHandle {
-        let load = || context.load_texture("kept", self.small.clone(), TextureOptions::LINEAR);
-        self.texture.get_or_init(load)
     }
 
     /// Samples per pixel.
@@ -83,7 +72,7 @@ impl Kept {
 }
 
 /// The list of kept pictures, oldest first. Places count from 0; the user sees them from 1.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Default)]
 pub struct KeptList {
     pictures: Vec<Arc<Kept>>,
     chosen: Option<usize>,
@@ -98,9 +87,10 @@ impl KeptList {
         self.pictures.get(place)
     }
 
-    /// As it is called in sentences.
-    pub fn title(&self, place: usize) -> String {
-        self.get(place).map_or_else(String::new, |kept| format!("{}: {}", place + 1, kept.document.title()))
+    /// As a kept picture is called in sentences.
+    pub fn title(&self, kept: &Kept) -> String {
+        let place = self.pictures.iter().position(|other| other.number == kept.number).unwrap_or_default();
+        format!("{}: {}", place + 1, kept.document.title())
     }
 
     /// The place of the picture that commands mean.
@@ -119,12 +109,10 @@ impl KeptList {
         }
     }
 
-    /// Adds a picture and chooses it. Returns its place.
+    /// Adds a picture. Returns its place.
     pub fn add(&mut self, kept: Kept) -> usize {
         self.pictures.push(Arc::new(kept));
-        let place = self.pictures.len() - 1;
-        self.chosen = Some(place);
-        place
+        self.pictures.len() - 1
     }
 
     /// Removes a picture; later ones move up.

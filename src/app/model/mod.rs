@@ -12,7 +12,6 @@ mod origin;
 mod remembered;
 mod show;
 mod sizing;
-mod tone;
 mod view;
 
 pub use checked::{CheckedScene, stamp_of};
@@ -23,9 +22,8 @@ pub use edit::{Body, Edit};
 pub use kept::{Kept, KeptList};
 pub use origin::{Origin, Source};
 pub use remembered::{Bookmark, Dock, Remembered, Stored, Tab};
-pub use show::Show;
+pub use show::{Channel, Show, Tone};
 pub use sizing::Sizing;
-pub use tone::{Channel, Tone};
 pub use view::{Mode, Other, ViewState, With, differ_in_camera, partner};
 
 use crate::backends::BackendChoice;
@@ -43,7 +41,7 @@ pub struct Presentation {
 }
 
 /// Everything that the user has chosen.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Model {
     /// The picture being edited.
     pub document: Document,

@@ -1,7 +1,7 @@
 //! What the viewport shows: a view of the film, or a comparison with another picture.
 
 use super::{CheckedScene, Document, Kept, KeptList, Origin, Show, Tone};
-use crate::app::denoising::Found;
+use crate::app::subject::Found;
 use crate::denoise::Denoised;
 use crate::job::recipe::Recipe;
 use crate::progressive::{ReferenceMeans, View};
@@ -26,26 +26,23 @@ pub enum With {
     Stage,
     /// The book's own arithmetic, even if there is another stage to compare with.
     Book,
-    /// A kept picture, by its place.
-    Kept(usize),
+    /// The chosen kept picture.
+    Kept,
 }
 
-/// What the main picture is compared with.
-#[derive(Clone, Debug)]
+/// What is traced to compare the main picture with.
+#[derive(Clone)]
 pub enum Other {
     /// Another stage.
     Stage(&'static Stage),
     /// The same picture, with its scene as edited, by the book's own arithmetic.
     ByTheBook(Arc<Origin>, Arc<CheckedScene>),
-    /// A picture that was kept.
-    Kept(Arc<Kept>),
 }
 
 impl PartialEq for Other {
-    /// Origins, scenes and kept pictures are immutable, so comparing their addresses is enough.
+    /// Origins and scenes are immutable, so comparing their addresses is enough.
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
-            (Other::Kept(a), Other::Kept(b)) => Arc::ptr_eq(a, b),
             (Other::Stage(a), Other::Stage(b)) => a == b,
             (Other::ByTheBook(a, of_a), Other::ByTheBook(b, of_b)) => {
                 Arc::ptr_eq(a, b) && Arc::ptr_eq(of_a, of_b)
@@ -57,17 +54,16 @@ impl PartialEq for Other {
 
 impl Other {
     /// The origin of the other picture.
-    pub fn origin(&self) -> Arc<Origin> {
+    pub fn origin(&self) -> Origin {
         match self {
-            Other::Stage(stage) => Arc::new(Origin::of_stage(stage)),
-            Other::ByTheBook(mine, scene) => Arc::new(mine.by_the_book(scene)),
-            Other::Kept(kept) => Arc::clone(&kept.document.origin),
+            Other::Stage(stage) => Origin::of_stage(stage),
+            Other::ByTheBook(mine, scene) => mine.by_the_book(scene),
         }
     }
 }
 
 /// The current view, which is exactly one.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub struct ViewState {
     show: Show,
     #[serde(skip)]
@@ -105,12 +101,18 @@ impl ViewState {
         self.with
     }
 
-    /// The place of the kept picture that this one is compared with, if it is.
-    pub fn compared_kept(&self) -> Option<usize> {
-        match (self.mode, self.with) {
-            (Some(_), With::Kept(place)) => Some(place),
-            _ => None,
+    /// The kept picture that this one is compared with, if it is.
+    pub fn compared_kept(&self) -> Option<&Arc<Kept>> {
+        self.kept.meant().filter(|_| self.mode.is_some() && self.with == With::Kept)
+    }
+
+    /// Keeps a picture, and chooses it unless another one is compared with. Returns its place.
+    pub fn keep(&mut self, kept: Kept) -> usize {
+        let place = self.kept.add(kept);
+        if self.compared_kept().is_none() {
+            self.kept.choose(place);
         }
+        place
     }
 
     /// Shows only this view of the film.
@@ -135,13 +137,14 @@ impl ViewState {
     /// Shows a kept picture in place of the traced one: a wipe whose divider is at the right edge.
     pub fn look(&mut self, place: usize) {
         self.kept.choose(place);
-        (self.mode, self.with, self.show) = (Some(Mode::Wipe), With::Kept(place), Show::Picture);
+        (self.mode, self.with, self.show) = (Some(Mode::Wipe), With::Kept, Show::Picture);
         self.divider = 1.0;
     }
 
     /// The place of the kept picture that hides the traced one.
     pub fn looked(&self) -> Option<usize> {
-        self.compared_kept().filter(|_| self.mode == Some(Mode::Wipe) && self.divider == 1.0)
+        let is_hidden = self.mode == Some(Mode::Wipe) && self.with == With::Kept && self.divider == 1.0;
+        self.kept.chosen().filter(|_| is_hidden)
     }
 
     /// Shows the traced picture, if a kept one hides it.
@@ -162,7 +165,7 @@ impl ViewState {
     /// Deletes the chosen kept picture. A comparison with it ends.
     pub fn delete_kept(&mut self) {
         let Some(place) = self.kept.chosen() else { return };
-        if matches!(self.with, With::Kept(_)) {
+        if self.with == With::Kept {
             self.end_comparison();
         }
         self.kept.delete(place);
@@ -173,20 +176,18 @@ impl ViewState {
         (self.mode, self.with) = (None, With::Stage);
     }
 
-    /// The view for resolving the film; `other` is the film of the second picture, once there is one.
-    pub fn of_film(&self, other: Option<&Arc<ReferenceMeans>>) -> View {
-        match (self.mode, other) {
+    /// The view for resolving the film of this run, or its denoised picture; `other` is the film of the second picture, once
+    /// there is one.
+    pub fn of_film(&self, run: u64, other: Option<&Arc<ReferenceMeans>>) -> View {
+        let view = match (self.mode, other) {
             (Some(Mode::Difference), Some(other)) => View::Difference(Arc::clone(other)),
             _ => self.show.of_film(&self.tone),
-        }
-    }
-
-    /// As [`ViewState::of_film`], of the denoised picture of this run, if it is to be shown.
-    pub fn of_shown(&self, run: u64, other: Option<&Arc<ReferenceMeans>>) -> View {
-        match (self.of_film(other), self.denoised_of(run)) {
-            (View::Occupancy, _) => View::Occupancy,
-            (view, Some(denoised)) => View::Denoised(Arc::clone(denoised), Box::new(view)),
-            (view, None) => view,
+        };
+        match self.denoised_of(run) {
+            Some(denoised) if !matches!(view, View::Occupancy) => {
+                View::Denoised(Arc::clone(denoised), Box::new(view))
+            }
+            _ => view,
         }
     }
 
@@ -198,29 +199,15 @@ impl ViewState {
         }
     }
 
-    /// The other picture that `document` is compared with; `None` without a comparison or a suitable picture.
+    /// What is traced to compare `document` with, if anything.
     pub fn compared(&self, document: &Document) -> Option<Other> {
-        let mode = self.mode?;
-        if let With::Kept(place) = self.with {
-            let kept = self.kept.get(place)?;
-            // A difference of scaled pictures would show the scaling.
-            let is_possible = mode == Mode::Wipe || kept.size() == document.size();
-            return is_possible.then(|| Other::Kept(Arc::clone(kept)));
+        let origin = &document.origin;
+        let by_the_book = || Other::ByTheBook(Arc::clone(origin), Arc::clone(&document.checked));
+        match (self.mode?, self.with, document.stage()) {
+            (_, With::Kept, _) => None,
+            (_, With::Stage, Some(stage)) => partner(stage).map(Other::Stage),
+            _ => origin.is_other_by_the_book().then(by_the_book),
         }
-        match document.stage().filter(|_| self.with == With::Stage) {
-            Some(stage) => partner(stage).map(Other::Stage),
-            None => {
-                let origin = &document.origin;
-                let by_book = || Other::ByTheBook(Arc::clone(origin), Arc::clone(&document.checked));
-                origin.is_other_by_the_book().then(by_book)
-            }
-        }
-    }
-
-    /// The kept picture at the other side of a wipe, which is as large as the shown one.
-    pub fn wiped(&self) -> Option<&Arc<Kept>> {
-        let place = self.compared_kept().filter(|_| self.mode == Some(Mode::Wipe))?;
-        self.kept.get(place)
     }
 }
 

@@ -4,7 +4,7 @@ mod paint;
 mod side;
 mod tab;
 
-use super::answers::Answers;
+use super::answers::Query;
 use super::model::{Document, best_isa};
 use crate::backends::explain::{Step, steps};
 use crate::render_cpu::PathRecorder;
@@ -32,14 +32,11 @@ struct Listed {
 /// The paths that are shown, if any.
 #[derive(Default)]
 pub struct Paths {
-    listed: Option<Listed>,
-    /// Why the paths that were asked for last could not be recorded, if so.
-    fault: Option<String>,
+    query: Query<(), Listed>,
     /// The path that is shown.
     selected: usize,
     /// The point of it that is explained: 0 at the camera, then the ends of its rays.
     point: usize,
-    answers: Answers<Listed>,
 }
 
 impl Paths {
@@ -47,8 +44,14 @@ impl Paths {
     pub fn list(&mut self, document: &Document, pixel: [u32; 2], context: &egui::Context) {
         // An invalid document is reported elsewhere.
         let Ok(job) = document.job(1) else { return };
+        if self.query.answer.as_ref().is_none_or(|listed| listed.pixel != pixel) {
+            self.selected = 0;
+        }
+        // Those of before stay until the new ones are there; a late answer is lost with its slot.
+        self.query = Query { answer: self.query.answer.take(), ..Query::default() };
+        let Some(answer) = self.query.ask(context, ()) else { return };
         let (count, document) = (count_in(document), document.clone());
-        let record = move || {
+        answer.give_from("paths", move || {
             let recorder = PathRecorder::new(&job, best_isa(), None);
             let path = |sample| {
                 let record = recorder.record(pixel, sample);
@@ -56,23 +59,14 @@ impl Paths {
                 steps.map(|step| (step.sentence(&job), step)).map(|(words, step)| (step, words)).collect()
             };
             Ok(Listed { pixel, document, paths: (0..count).map(path).collect() })
-        };
-        // A late answer is lost with its slot.
-        self.answers = Answers::default();
-        self.answers.ask("paths", context, record);
-        self.fault = None;
+        });
     }
 
-    fn learn(&mut self, outcome: Result<Listed, String>) {
-        match outcome {
-            Ok(listed) => {
-                if self.listed.as_ref().is_none_or(|old| old.pixel != listed.pixel) {
-                    self.selected = 0;
-                }
-                self.listed = Some(listed);
-                self.select(self.selected);
-            }
-            Err(reason) => *self = Paths { fault: Some(reason), ..Paths::default() },
+    fn learn(&mut self) {
+        if self.query.follow() {
+            self.select(self.selected);
+        } else if self.query.fault.is_some() {
+            self.query.answer = None;
         }
     }
 
@@ -84,10 +78,8 @@ impl Paths {
     /// Takes recorded paths. Lists them again if a change affects the random numbers or how many samples the picture has;
     /// after a change of the camera, the paths stay those of the pixel as it was.
     pub fn follow(&mut self, document: &Document, context: &egui::Context) {
-        while let Some(outcome) = self.answers.take() {
-            self.learn(outcome);
-        }
-        let Some(listed) = &self.listed else { return };
+        self.learn();
+        let Some(listed) = &self.query.answer else { return };
         // Undo may have led to a stage without rays.
         if document.no_rays().is_some() {
             return self.forget();
@@ -95,7 +87,7 @@ impl Paths {
         let is_same = std::sync::Arc::ptr_eq(&listed.document.checked, &document.checked)
             && listed.paths.len() as u64 == count_in(document)
             && listed.document.settings == document.settings;
-        if !self.answers.is_open() && !is_same {
+        if !self.query.answers.is_open() && !is_same {
             let (pixel, sizes) = (listed.pixel, [listed.document.size(), document.size()]);
             let before = Document { camera: listed.document.camera, ..document.clone() };
             self.list(&before, at_same_place(pixel, sizes), context);
@@ -104,11 +96,11 @@ impl Paths {
 
     /// The number of listed paths.
     pub fn len(&self) -> usize {
-        self.listed.as_ref().map_or(0, |listed| listed.paths.len())
+        self.query.answer.as_ref().map_or(0, |listed| listed.paths.len())
     }
 
     fn path(&self) -> Option<&Path> {
-        self.listed.as_ref()?.paths.get(self.selected)
+        self.query.answer.as_ref()?.paths.get(self.selected)
     }
 
     /// Shows a path, from its first hit on.
@@ -165,24 +157,24 @@ mod tests {
 
     /// Waits for the paths that have been asked for.
     fn take(paths: &mut Paths) {
-        let listed = paths.answers.wait().unwrap();
-        paths.learn(listed);
+        paths.query.answer = paths.query.answers.wait().and_then(Result::ok);
+        paths.select(paths.selected);
     }
 
     #[test]
     fn a_fault_is_shown_and_not_tried_again() {
         let (document, mut paths) = listed("metal", [16, 9]);
         let context = egui::Context::default();
-        paths.list(&document, [3, 2], &context);
-        paths.learn(Err("on purpose".to_owned()));
+        paths.query = Query::default();
+        paths.query.ask(&context, ()).unwrap().give(Err("on purpose".to_owned()));
         paths.follow(&document, &context);
         assert_eq!(
-            (paths.answers.is_open(), paths.len(), paths.fault.as_deref()),
+            (paths.query.answers.is_open(), paths.len(), paths.query.fault.as_deref()),
             (false, 0, Some("on purpose"))
         );
         paths.list(&document, [3, 2], &context);
         take(&mut paths);
-        assert!(paths.len() > 0 && paths.fault.is_none());
+        assert!(paths.len() > 0 && paths.query.fault.is_none());
     }
 
     #[test]
@@ -204,22 +196,25 @@ mod tests {
         let context = egui::Context::default();
         document.camera.vfov_degrees += 1.0;
         paths.follow(&document, &context);
-        assert!(!paths.answers.is_open(), "the camera has moved, but the paths are still those of the pixel");
+        assert!(
+            !paths.query.answers.is_open(),
+            "the camera has moved, but the paths are still those of the pixel"
+        );
         document.settings.seed += 1;
         paths.follow(&document, &context);
-        assert!(paths.answers.is_open());
+        assert!(paths.query.answers.is_open());
         take(&mut paths);
-        let listed = paths.listed.as_ref().unwrap();
+        let listed = paths.query.answer.as_ref().unwrap();
         assert_eq!(listed.document.settings.seed, document.settings.seed);
         assert_ne!(listed.document.camera, document.camera, "the camera is still the one of the pixel");
         document.set_size([64, 36]);
         paths.follow(&document, &context);
         take(&mut paths);
-        assert_eq!(paths.listed.as_ref().map(|listed| listed.pixel), Some([33, 19]));
+        assert_eq!(paths.query.answer.as_ref().map(|listed| listed.pixel), Some([33, 19]));
         paths.follow(&document, &context);
-        assert!(!paths.answers.is_open(), "nothing has changed");
+        assert!(!paths.query.answers.is_open(), "nothing has changed");
         let no_rays = Document::new(Origin::of_stage(Stage::find("ppm-gradient").unwrap()));
         paths.follow(&no_rays, &context);
-        assert_eq!((paths.len(), paths.answers.is_open()), (0, false), "this picture has none");
+        assert_eq!((paths.len(), paths.query.answers.is_open()), (0, false), "this picture has none");
     }
 }

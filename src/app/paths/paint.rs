@@ -20,7 +20,7 @@ const FAINT: usize = 16;
 impl Paths {
     /// Draws the paths; the shown one is drawn last and most clearly.
     pub fn paint(&self, document: &Document, ui: &Ui, painter: &Painter, rect: Rect) {
-        let (Some(listed), Some(shown)) = (&self.listed, self.path()) else { return };
+        let (Some(listed), Some(shown)) = (&self.query.answer, self.path()) else { return };
         let painter = &painter.with_clip_rect(rect.intersect(painter.clip_rect()));
         let accent = theme::colours(ui).accent;
         let view = View { camera: &document.camera, aspect: document.aspect(), rect };
@@ -53,7 +53,7 @@ impl Paths {
 }
 
 /// The end of a ray, or the point up to which it is drawn.
-fn end_of(step: &Step) -> DVec3 {
+pub(super) fn end_of(step: &Step) -> DVec3 {
     step.hit.map_or(step.origin + step.direction * SKY_LENGTH, |hit| hit.point)
 }
 

@@ -12,13 +12,14 @@ const LIST: f32 = 352.0;
 
 impl Paths {
     pub fn ui(&mut self, ui: &mut Ui) {
-        let (Some(listed), Some(path)) = (&self.listed, self.path()) else {
-            let fault = self.fault.as_ref().map(|reason| format!("The paths were not recorded: {reason}"));
+        let (Some(listed), Some(path)) = (&self.query.answer, self.path()) else {
+            let fault =
+                self.query.fault.as_ref().map(|reason| format!("The paths were not recorded: {reason}"));
             hint(
                 ui,
                 match &fault {
                     Some(fault) => fault,
-                    None if self.answers.is_open() => "Recording paths\u{2026}",
+                    None if self.query.answers.is_open() => "Recording paths\u{2026}",
                     None => "Point at the picture and press T.",
                 },
             );

@@ -34,12 +34,10 @@ const MARGIN: f32 = 8.0;
 pub struct Viewport {
     /// Position and scale of the picture.
     pub placement: Placement,
-    /// Those of before, while the window presents.
-    parked: Option<Placement>,
+    /// Those of before the presentation.
+    pub parked: Placement,
     moving: Moving,
     is_dragging_divider: bool,
-    /// The pixel where the context menu was opened.
-    menu_at: Option<[u32; 2]>,
     pub room: Option<Rect>,
     pub room_pixels: [u32; 2],
     selection: Selection,
@@ -54,14 +52,8 @@ pub struct Touch {
     pub is_move: bool,
     /// The pixel under the pointer.
     pub hovered: Option<[u32; 2]>,
-    /// The pixel whose paths the user asked for.
-    pub listed: Option<[u32; 2]>,
     /// What a click has done, or why it does nothing, in words.
     pub said: Option<String>,
-    /// The sphere that the user selected; the inner `None` stands for no sphere.
-    pub select: Option<Option<usize>>,
-    /// The area of the viewport.
-    pub room: Option<Rect>,
 }
 
 impl Viewport {
@@ -72,11 +64,11 @@ impl Viewport {
     }
 
     /// Draws the picture and handles input on it, which moves the camera and the wipe's divider, `0..=1` of the picture's
-    /// width.
+    /// width, and selects a sphere.
     pub fn ui(
         &mut self,
         ui: &mut Ui,
-        (camera, divider): (&mut Camera, &mut f32),
+        (camera, divider, selected): (&mut Camera, &mut f32, &mut Option<usize>),
         pictures: Pictures<'_>,
         facts: &Facts,
     ) -> Touch {
@@ -85,59 +77,53 @@ impl Viewport {
         let response = ui.allocate_rect(room, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
         let rect = self.place(ui, room, facts);
-        let mut touch = Touch { room: Some(room), ..Touch::default() };
+        let mut touch = Touch::default();
         let is_wipe = view.mode() == Some(Mode::Wipe);
         let mut is_held = self.handle_divider(ui, &response, is_wipe, divider);
         // Nothing acts on a picture that a kept one hides.
         let is_hidden = view.looked().is_some();
-        if is_hidden && !is_held {
-            moving::move_picture(ui, &response, &mut self.placement);
-            is_held = true;
-        } else if !is_held {
+        if !is_hidden && !is_held {
             (is_held, touch.is_move) = self.selection.handle(ui, &response, rect, facts);
         }
         if is_held {
             self.moving = Moving::default();
         } else {
-            self.moving.handle(ui, &response, &mut self.placement, (camera, live), &mut touch);
-            self.handle_click(ui, &response, live, camera, &mut touch);
+            let handles = (&mut *camera, live);
+            self.moving.handle(ui, &response, &mut self.placement, handles, is_hidden, &mut touch);
+        }
+        if !is_hidden && !is_held {
+            self.handle_click(ui, &response, facts, (camera, selected), &mut touch);
         }
         let document = Document { camera: *camera, ..live.clone() };
         paint::paint(ui, [room, rect], (&self.placement, *divider), pictures, &document, facts);
-        let own = if is_wipe {
-            Rect { min: egui::pos2(rect.lerp_inside(vec2(*divider, 0.0)).x, rect.top()), ..rect }
-        } else {
-            rect
-        };
+        // A wipe shows the traced picture right of the divider.
+        let left = if is_wipe { *divider } else { 0.0 };
+        let own = rect.with_min_x(rect.lerp_inside(vec2(left, 0.0)).x);
         self.selection.paint(ui, (rect, own.intersect(room)), &document, facts);
         self.moving.paint(ui, own.intersect(room), rect, &document);
         self.pointer = response.hover_pos().filter(|at| rect.contains(*at)).map(|at| place_at(rect, at));
         let pixel = |at| self.placement.pixel_at(at, document.size());
         touch.hovered = response.hover_pos().and_then(pixel);
-        if response.secondary_clicked() {
-            let at = response.interact_pointer_pos();
-            self.menu_at = at.and_then(pixel);
-            if let Some(at) = at.filter(|at| rect.contains(*at) && live.no_rays().is_none() && !is_hidden) {
-                touch.select = Some(live.pick(camera, place_at(rect, at)).map(|pick| pick.sphere));
-            }
+        if response.secondary_clicked()
+            && let Some(at) = response.interact_pointer_pos().filter(|at| rect.contains(*at))
+            && live.no_rays().is_none()
+            && !is_hidden
+        {
+            *selected = live.pick(camera, place_at(rect, at)).map(|pick| pick.sphere);
         }
-        if response.context_menu(|ui| context_menu(ui, facts)).is_some() {
+        let has_menu = response.context_menu(|ui| context_menu(ui, facts)).is_some();
+        if has_menu && !response.secondary_clicked() {
             // The entries mean the pixel where the menu was opened.
-            touch.hovered = self.menu_at;
+            touch.hovered = None;
         }
         paint::paint_drop(ui, room);
         touch
     }
 
-    /// Places the picture. One that is presented has a place of its own.
+    /// Places the picture. One that is presented fits the screen.
     fn place(&mut self, ui: &Ui, room: Rect, facts: &Facts) -> Rect {
         let model = &facts.model;
         let is_presenting = model.presentation.is_some();
-        match (is_presenting, self.parked.take()) {
-            (true, None) => self.parked = Some(self.placement.clone()),
-            (false, Some(parked)) => self.placement = parked,
-            (_, parked) => self.parked = parked,
-        }
         let is_of_sight = matches!(self.placement.zoom, Zoom::Part(_));
         if !facts.has_sight && (is_presenting || is_of_sight) {
             self.placement.fit();
@@ -177,11 +163,11 @@ impl Viewport {
         &mut self,
         ui: &Ui,
         response: &Response,
-        live: &Document,
-        camera: &mut Camera,
+        facts: &Facts,
+        (camera, selected): (&mut Camera, &mut Option<usize>),
         touch: &mut Touch,
     ) {
-        let rect = self.placement.rect;
+        let (rect, live) = (self.placement.rect, facts.document());
         let at = response.interact_pointer_pos().filter(|at| rect.contains(*at));
         let Some(at) = at.filter(|_| response.clicked()) else { return };
         if let Some(reason) = live.no_rays() {
@@ -195,7 +181,7 @@ impl Viewport {
                 *camera = navigation::recentre(camera, pick.point);
             }
         } else if is_held(ui, |modifiers| modifiers.alt) {
-            touch.listed = self.placement.pixel_at(at, live.size());
+            facts.send(Command::ListPaths);
         } else if is_held(ui, |modifiers| modifiers.command) {
             let said = pick.map(|pick| {
                 *camera = navigation::focus(camera, pick.point);
@@ -205,7 +191,7 @@ impl Viewport {
             });
             touch.said = Some(said.unwrap_or_else(|| "The sky has no distance".to_owned()));
         } else {
-            touch.select = Some(pick.map(|pick| pick.sphere));
+            *selected = pick.map(|pick| pick.sphere);
         }
     }
 }

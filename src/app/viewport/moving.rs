@@ -25,13 +25,14 @@ pub(super) struct Moving {
 }
 
 impl Moving {
-    /// Handles drags and the wheel.
+    /// Handles drags and the wheel. Nothing moves the camera of a picture that is hidden.
     pub fn handle(
         &mut self,
         ui: &Ui,
         response: &Response,
         placement: &mut Placement,
         (camera, document): (&mut Camera, &Document),
+        is_hidden: bool,
         touch: &mut Touch,
     ) {
         let (modifiers, scroll, zoom, pressed) = ui.input(|input| {
@@ -44,14 +45,17 @@ impl Moving {
             Some(pick??.point)
         };
         let mut moved = *camera;
+        let [right, down] = [delta.x, delta.y].map(|points| f64::from(points) * TURN_PER_POINT);
         let is_primary = response.dragged_by(PointerButton::Primary);
-        let is_panning = response.dragged_by(PointerButton::Middle) || (is_primary && modifiers.shift);
+        let is_panning =
+            response.dragged_by(PointerButton::Middle) || (is_primary && (modifiers.shift || is_hidden));
         let is_orbit = is_primary && !is_panning;
         if !is_orbit {
             self.pivot = None;
         }
         if is_panning {
-            pan(ui, response, placement);
+            placement.pan_by(delta);
+            ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
         } else if is_orbit {
             // Where the button went down, before the pointer moved far enough for a drag.
             let begin = pressed.filter(|_| response.drag_started()).or(response.interact_pointer_pos());
@@ -59,14 +63,18 @@ impl Moving {
                 let there = begin.and_then(|at| point(camera, at)).unwrap_or(camera.look_at);
                 navigation::within_reach(camera, there)
             });
-            moved = orbited(camera, pivot, delta, document);
-        } else if response.dragged_by(PointerButton::Secondary) && delta != Vec2::ZERO {
-            let [right, down] = [delta.x, delta.y].map(|points| f64::from(points) * TURN_PER_POINT);
+            if delta != Vec2::ZERO {
+                moved =
+                    navigation::orbit_above_ground(camera, pivot, right, UP_SHARE * down, document.scene());
+            }
+        } else if response.dragged_by(PointerButton::Secondary) && delta != Vec2::ZERO && !is_hidden {
             moved = navigation::look(&moved, right, -down);
         }
         if let Some(pointer) = response.hover_pos() {
             if zoom != 1.0 {
                 placement.zoom_at(pointer, zoom);
+            } else if is_hidden && scroll != 0.0 {
+                placement.zoom_at(pointer, (scroll * DOLLY_PER_POINT as f32).exp());
             } else if scroll != 0.0 {
                 let towards = point(&moved, pointer).unwrap_or_else(|| match rect.contains(pointer) {
                     true => navigation::at_depth(&moved, place_at(rect, pointer), document.aspect()),
@@ -93,30 +101,4 @@ impl Moving {
         painter.circle_stroke(at, 6.0, Stroke::new(1.25, Color32::from_white_alpha(150)));
         painter.circle_filled(at, 1.5, Color32::from_white_alpha(190));
     }
-}
-
-/// The camera after a drag by so many points about `pivot`.
-pub(super) fn orbited(camera: &Camera, pivot: DVec3, drag: Vec2, document: &Document) -> Camera {
-    if drag == Vec2::ZERO {
-        return *camera;
-    }
-    let [right, down] = [drag.x, drag.y].map(|points| f64::from(points) * TURN_PER_POINT);
-    navigation::orbit_above_ground(camera, pivot, right, UP_SHARE * down, document.scene())
-}
-
-/// Moves and enlarges the picture alone.
-pub(super) fn move_picture(ui: &Ui, response: &Response, placement: &mut Placement) {
-    if response.dragged_by(PointerButton::Primary) || response.dragged_by(PointerButton::Middle) {
-        pan(ui, response, placement);
-    }
-    let (scroll, zoom) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-    let factor = zoom * (scroll * DOLLY_PER_POINT as f32).exp();
-    if let Some(pointer) = response.hover_pos().filter(|_| factor != 1.0) {
-        placement.zoom_at(pointer, factor);
-    }
-}
-
-fn pan(ui: &Ui, response: &Response, placement: &mut Placement) {
-    placement.pan_by(response.drag_delta());
-    ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
 }

@@ -69,7 +69,7 @@ pub(super) fn paint(
     let [theirs, mine] = &titles;
     match (view.mode(), second) {
         (Some(Mode::Wipe), Some((texture, is_smooth))) => {
-            let size = view.wiped().map_or(document.size(), |kept| kept.size());
+            let size = view.compared_kept().map_or(document.size(), |kept| kept.size());
             let left = (id(texture, is_smooth), shape_in(rect, size));
             wipe(ui, &painter, rect, divider, left, [theirs, mine]);
         }
@@ -214,14 +214,7 @@ pub(super) fn paint_drop(ui: &Ui, room: Rect) {
     painter.rect_filled(room, 0.0, ui.visuals().panel_fill.gamma_multiply(0.8));
     let edge = Stroke::new(2.0, theme::colours(ui).accent);
     painter.rect_stroke(room.shrink(12.0), CornerRadius::same(8), edge, egui::StrokeKind::Inside);
-    let font = TextStyle::Heading.resolve(ui.style());
-    painter.text(
-        room.center(),
-        Align2::CENTER_CENTER,
-        text.trim_end(),
-        font,
-        ui.visuals().strong_text_color(),
-    );
+    plate(ui, &painter, room.center(), Align2::CENTER_CENTER, text.trim_end(), room.width());
 }
 
 #[cfg(test)]
