@@ -12,20 +12,19 @@ pub use sight::{Means, Sight};
 
 use crate::scene::{Camera, Scene};
 use crate::system::suggest::{or_nearest, similar_names};
-use std::fmt;
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
 use thiserror::Error;
 
 /// Web address of the book.
 pub const BOOK_URL: &str = "https://raytracing.github.io/books/RayTracingInOneWeekend.html";
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Stage {
     /// Identifier on the command line, in the window and in files. It never changes.
     pub id: &'static str,
     /// Section of the book, such as "11.4".
     pub section: &'static str,
-    pub section_title: &'static str,
-    pub chapter_title: &'static str,
     /// Weekender's own heading.
     pub title: &'static str,
     /// What the tracer can do from this stage on.
@@ -43,7 +42,7 @@ pub struct Stage {
     pub setup: Setup,
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Setup {
     /// Always gives the same scene.
     pub scene: fn() -> Scene,
@@ -101,23 +100,34 @@ impl Stage {
         if self.next().is_none() { 1200 } else { 400 }
     }
 
+    pub fn section_title(&self) -> &'static str {
+        heading(self.section).unwrap_or_default()
+    }
+
+    pub fn chapter_title(&self) -> &'static str {
+        heading(self.chapter()).unwrap_or_default()
+    }
+
     /// Web address of the stage's section.
     pub fn url(&self) -> String {
-        book_url(self.chapter_title, Some(self.section_title))
+        book_url(self.section)
     }
 }
 
-/// Web address of a chapter or section, by heading.
-pub fn book_url(chapter: &str, section: Option<&str>) -> String {
-    // The book's anchors are headings in lower case without spaces.
-    let anchor = |heading: &str| heading.replace(' ', "").to_lowercase();
-    let section = section.map_or_else(String::new, |section| format!("/{}", anchor(section)));
-    format!("{BOOK_URL}#{}{section}", anchor(chapter))
+/// The book's heading of a chapter or section, such as "6" or "6.1".
+pub fn heading(number: &str) -> Option<&'static str> {
+    static HEADINGS: LazyLock<BTreeMap<String, String>> =
+        LazyLock::new(|| toml::from_str(include_str!("../../assets/book-headings.toml")).unwrap_or_default());
+    HEADINGS.get(number).map(String::as_str)
 }
 
-impl fmt::Debug for Stage {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Stage").field("id", &self.id).finish_non_exhaustive()
+/// Web address of a chapter or section.
+pub fn book_url(number: &str) -> String {
+    // The book's anchors are headings in lower case without spaces.
+    let anchor = |number| heading(number).unwrap_or_default().replace(' ', "").to_lowercase();
+    match number.split_once('.') {
+        Some((chapter, _)) => format!("{BOOK_URL}#{}/{}", anchor(chapter), anchor(number)),
+        None => format!("{BOOK_URL}#{}", anchor(number)),
     }
 }
 

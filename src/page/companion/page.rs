@@ -7,7 +7,7 @@ use super::prose;
 use super::site::{Site, Uses};
 use crate::page::gallery::Panel;
 use crate::page::web;
-use crate::stages::{BOOK_URL, Stage};
+use crate::stages::{BOOK_URL, Stage, book_url, heading};
 use crate::system::files::GENERATOR;
 use anyhow::Result;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -168,7 +168,7 @@ fn section(site: &Site, place: usize, uses: &mut Uses) -> Result<Markup, Fault> 
     let (id, title) = (&chapter.id, &chapter.facts.title);
     let text = prose::chapter(site, chapter, uses)?;
     let of_book = |number| {
-        let found = site.book.url(number).zip(site.book.heading(number)).map(|found| (number, found));
+        let found = heading(number).map(|heading| (number, book_url(number), heading));
         found.ok_or_else(|| Fault::new(&chapter.file, 1, format!("the book has no chapter {number:?}")))
     };
     let book = chapter.facts.book.as_deref().map(of_book).transpose()?;
@@ -179,7 +179,7 @@ fn section(site: &Site, place: usize, uses: &mut Uses) -> Result<Markup, Fault> 
             header .head {
                 p .kicker {
                     @if let Some(number) = chapter.shown_number() { "Chapter " (number) }
-                    @if let Some((number, (url, heading))) = book {
+                    @if let Some((number, url, heading)) = book {
                         @if chapter.shown_number().is_some() { " · " }
                         a .book href=(url) {
                             "The book, chapter " (number) @if heading != title { ": " (heading) }

@@ -1,13 +1,12 @@
 //! Everything that the page's texts can refer to, and what they did refer to.
 
-use super::book::{self, Book};
+use super::back_matter::{GLOSSARY, REFERENCES, Reference, Term};
 use super::chapter::Chapter;
 use super::fault::Fault;
 use super::highlight::Highlighter;
 use super::library::{Entry, Library};
 use super::measured::Measured;
 use super::pictures::Picture;
-use super::reference::{GLOSSARY, REFERENCES, Reference, Term};
 use crate::page::gallery::Figure;
 use anyhow::{Result, anyhow};
 use math_core::{LatexToMathML, MathCoreConfig};
@@ -17,7 +16,6 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct Site {
     /// Where diagrams are read from.
     pub library: Library,
-    pub book: Book,
     pub chapters: Vec<Chapter>,
     /// In alphabetical order.
     pub terms: Vec<Entry<Term>>,
@@ -53,7 +51,6 @@ impl Site {
         terms.sort_by_key(|entry| entry.value.term.to_lowercase());
         Ok(Site {
             library: library.clone(),
-            book: library.toml(book::FILE)?,
             chapters: Chapter::read_all(library)?,
             terms,
             references: library.entries(REFERENCES)?,
