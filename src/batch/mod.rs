@@ -22,14 +22,14 @@ use crate::backends;
 use crate::cli::BatchOptions;
 use crate::cli::terminal::{self, print, print_beside};
 use crate::job::recipe::{Recipe, file};
-use crate::job::saved;
+use crate::job::saved::{self, SavedFilm};
 use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
 use crate::system::console;
 use crate::system::failure::Failure;
 use crate::system::files::{STANDARD, ShownPath, check_replaceable, check_writable, write_text};
 use crate::system::interrupt::Interrupt;
-use picture::Picture;
+use files::Files;
 use std::path::Path;
 use std::process::ExitCode;
 use summary::SCHEMA;
@@ -41,16 +41,14 @@ use summary::SCHEMA;
 /// are in its files; [`Failure::Run`] otherwise.
 pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     check_before(&options)?;
-    let mut picture = Picture::lock(&options.render)?;
-    if let Some(path) = &options.render.resume {
-        picture.resumed = Some(saved::resume(path, &options.render.job).map_err(Failure::input)?);
-    }
-    render(&options, picture)
+    let files = Files::lock(&options.render)?;
+    let resumed = options.render.resume.as_ref().map(|path| saved::resume(path, &options.render.job));
+    render(&options, files, resumed.transpose().map_err(Failure::input)?)
 }
 
 /// Renders a picture, whose files are locked.
-fn render(options: &BatchOptions, mut picture: Picture) -> Result<ExitCode, Failure> {
-    picture.check()?;
+fn render(options: &BatchOptions, mut files: Files, resumed: Option<SavedFilm>) -> Result<ExitCode, Failure> {
+    let warnings = files.check(resumed.as_ref())?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let mut studio = Studio::open(&options.backend, &interrupt)?;
     if let Some(path) = &options.save_scene {
@@ -58,7 +56,8 @@ fn render(options: &BatchOptions, mut picture: Picture) -> Result<ExitCode, Fail
     }
     let has_stdout = options.render.out == Path::new(STANDARD);
     let beside = if has_stdout { Some(Path::new(STANDARD)) } else { options.json.as_deref() };
-    let (summary, outcome) = picture.render(options, &mut studio, &interrupt);
+    let film = resumed.map(|saved| saved.film);
+    let (summary, outcome) = picture::render(options, files, film, &warnings, &mut studio, &interrupt);
     let printed = print_beside(beside, &summary.to_string());
     let figures = printed.and(write_figures(&summary.json(), options.json.as_deref()));
     ended(outcome.err(), figures, &interrupt)

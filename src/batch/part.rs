@@ -1,7 +1,7 @@
 //! `weekender render-part`: renders a part of a plan. The command can be repeated at any time: it continues from the
 //! part's last checkpoint, and ends at once if the part is complete.
 
-use super::picture::Picture;
+use super::files::Files;
 use super::summary::Summary;
 use super::{check_before, render, write_figures};
 use crate::cli::terminal::print_beside;
@@ -54,7 +54,7 @@ fn render_samples(plan: &Plan, index: usize, options: PartOptions) -> Result<Exi
         crashes_at: None,
     };
     check_before(&batch)?;
-    let mut picture = Picture::lock(&batch.render)?;
+    let files = Files::lock(&batch.render)?;
     match find(&path, plan, part)? {
         Some(found) if part.missing(found.film.samples()) == 0 => {
             let text = format!("part {index} is whole: samples {start}..{end} in {}\n", path.shown());
@@ -63,10 +63,7 @@ fn render_samples(plan: &Plan, index: usize, options: PartOptions) -> Result<Exi
             write_figures(&figures, batch.json.as_deref()).map_err(Failure::Run)?;
             Ok(ExitCode::SUCCESS)
         }
-        found => {
-            picture.resumed = found;
-            render(&batch, picture)
-        }
+        found => render(&batch, files, found),
     }
 }
 

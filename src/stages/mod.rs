@@ -12,9 +12,9 @@ pub use sight::{Means, Sight};
 
 use crate::scene::{Camera, Scene};
 use crate::system::suggest::{or_nearest, similar_names};
+use anyhow::{Context, Result};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
-use thiserror::Error;
 
 /// Web address of the book.
 pub const BOOK_URL: &str = "https://raytracing.github.io/books/RayTracingInOneWeekend.html";
@@ -60,10 +60,10 @@ impl Stage {
     pub const ALL: &'static [Stage] = table::STAGES;
 
     /// Finds a stage by id. The error suggests similar ids.
-    pub fn find(id: &str) -> Result<&'static Stage, UnknownStage> {
-        Self::ALL.iter().find(|stage| stage.id == id).ok_or_else(|| UnknownStage {
-            id: id.to_owned(),
-            near: similar_names(id, Self::ALL.iter().map(|stage| stage.id)),
+    pub fn find(id: &str) -> Result<&'static Stage> {
+        Self::ALL.iter().find(|stage| stage.id == id).with_context(|| {
+            let near = similar_names(id, Self::ALL.iter().map(|stage| stage.id));
+            format!("there is no stage {id:?}; {}", or_nearest(&near))
         })
     }
 
@@ -138,10 +138,3 @@ impl PartialEq for Stage {
 }
 
 impl Eq for Stage {}
-
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("there is no stage {id:?}; {}", or_nearest(near))]
-pub struct UnknownStage {
-    pub id: String,
-    pub near: Vec<&'static str>,
-}

@@ -1,7 +1,6 @@
 //! The glossary and references as HTML.
 
-use super::fault::Fault;
-use super::library::Entry;
+use super::library::{Entry, Fault};
 use super::prose;
 use super::site::{Site, Uses};
 use maud::{Markup, html};

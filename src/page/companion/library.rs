@@ -1,12 +1,13 @@
 //! The page's texts and the sources that it quotes: embedded when the program was built, or read from a checkout.
 
-use super::fault::{Fault, line_of};
 use crate::system::files;
 use serde::de::DeserializeOwned;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::fmt;
 use std::path::PathBuf;
 use std::time::SystemTime;
+use thiserror::Error;
 use toml::Spanned;
 
 /// Reads project files by their paths in the checkout.
@@ -127,6 +128,29 @@ impl Library {
     pub fn chapters() -> impl Iterator<Item = &'static str> {
         FILES.iter().map(|(path, _)| *path).filter(|path| path.starts_with(FOLDER) && path.ends_with(".md"))
     }
+}
+
+/// An error in the texts, with file and line.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{file}{}: {message}", if *.line == 0 { String::new() } else { format!(":{}", .line) })]
+pub struct Fault {
+    /// Path in the checkout.
+    pub file: String,
+    /// Counted from 1; 0 if the fault concerns the whole file.
+    pub line: usize,
+    /// What is wrong and how to fix it.
+    pub message: String,
+}
+
+impl Fault {
+    pub fn new(file: &str, line: usize, message: impl fmt::Display) -> Self {
+        Fault { file: file.to_owned(), line, message: message.to_string() }
+    }
+}
+
+/// The line of a byte position, counted from 1.
+pub fn line_of(text: &str, position: usize) -> usize {
+    1 + text.bytes().take(position).filter(|byte| *byte == b'\n').count()
 }
 
 #[cfg(test)]

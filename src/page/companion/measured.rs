@@ -1,8 +1,7 @@
 //! Tables and charts of stored measurements, each with its command and machine.
 
 use super::directive::{code_words, numbered};
-use super::fault::Fault;
-use super::library::{FOLDER, Library};
+use super::library::{FOLDER, Fault, Library};
 use crate::measure;
 use crate::measure::report::{self, CurveSummary};
 use crate::numbers::chart::{self, UNTITLED_TOP};

@@ -5,7 +5,6 @@ mod back_matter;
 mod chapter;
 mod directive;
 mod excerpt;
-mod fault;
 mod highlight;
 mod library;
 mod measured;

@@ -1,7 +1,7 @@
 //! The page around the chapters.
 
 use super::directive;
-use super::fault::Fault;
+use super::library::Fault;
 use super::pictures::Picture;
 use super::prose;
 use super::site::{Site, Uses};

@@ -2,7 +2,7 @@
 
 use super::chapter::Chapter;
 use super::directive::{self, typographic};
-use super::fault::{Fault, line_of};
+use super::library::{Fault, line_of};
 use super::section::split_heading;
 use super::site::{Site, Uses};
 use crate::page::gallery::Figure;

@@ -2,9 +2,8 @@
 
 use super::back_matter::{GLOSSARY, REFERENCES, Reference, Term};
 use super::chapter::Chapter;
-use super::fault::Fault;
 use super::highlight::Highlighter;
-use super::library::{Entry, Library};
+use super::library::{Entry, Fault, Library};
 use super::measured::Measured;
 use super::pictures::Picture;
 use crate::page::gallery::Figure;

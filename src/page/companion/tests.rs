@@ -2,8 +2,7 @@
 
 use super::back_matter::{Area, Reference, Term};
 use super::chapter::Chapter;
-use super::fault::Fault;
-use super::library::{Entry, Library};
+use super::library::{Entry, Fault, Library};
 use super::site::{Site, Uses};
 use super::{page, prose};
 use crate::stages::Stage;

@@ -5,7 +5,8 @@ mod setups;
 use super::{DielectricLaws, Diffuse, Means, Rules, Setup, Shading, Sight, Stage, SurfaceRule, Transfer};
 use crate::scene::Camera;
 use crate::scene::builtin::{
-    BOOK_CAMERA, LeftSphere, book, matte_on_ground, metals, one_sphere, three_spheres, touching_spheres,
+    BOOK_CAMERA, LeftSphere, SIDE_VIEW, WIDE_LENS, book, matte_on_ground, metals, one_sphere, three_spheres,
+    touching_spheres,
 };
 use glam::DVec3;
 use setups::{LINEAR, ONE_RAY, PATHS, THREE_BALLS};
@@ -32,9 +33,6 @@ const GLASS_BALL: Option<[f64; 4]> = Some([0.0, 0.17, 0.4, 0.83]);
 
 /// Its upper right, with the rim.
 const GLASS_RIM: Option<[f64; 4]> = Some([0.08, 0.17, 0.39, 0.6]);
-
-/// The three spheres from above and from the left.
-const SIDE_VIEW: Camera = Camera { look_from: DVec3::new(-2.0, 2.0, 1.0), ..Camera::BOOK };
 
 const CLOSE_SIDE_VIEW: Camera = Camera { vfov_degrees: 20.0, ..SIDE_VIEW };
 
@@ -574,11 +572,7 @@ pub(super) const STAGES: &[Stage] = &[
         },
         alt: "The same view; the middle ball is sharp, the glass ball in front and the metal ball behind are blurred.",
         pair: Some("view-close"),
-        setup: Setup {
-            camera: Camera { defocus_angle_degrees: 10.0, focus_distance: Some(3.4), ..CLOSE_SIDE_VIEW },
-            samples_per_pixel: 256,
-            ..THREE_BALLS
-        },
+        setup: Setup { camera: WIDE_LENS, samples_per_pixel: 256, ..THREE_BALLS },
     },
     Stage {
         id: "book",
