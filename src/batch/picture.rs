@@ -5,7 +5,7 @@ use super::keeping::Keeper;
 use super::progress::{STEPS, display, show};
 use super::studio::{Event, Studio};
 use super::summary::Summary;
-use crate::cli::{BatchOptions, RenderOptions};
+use crate::cli::BatchOptions;
 use crate::film::Film;
 use crate::progressive::{Phase, Status};
 use crate::system::clock::Instant;
@@ -20,17 +20,16 @@ use std::sync::Arc;
 /// Renders a picture, from the film to continue, and writes its files. On any failure, the samples rendered so far are
 /// kept. `warnings` are printed before it begins.
 pub(super) fn render<'a>(
-    options: &'a BatchOptions,
+    render: &'a BatchOptions,
     files: Files,
     film: Option<Film>,
     warnings: &[String],
     studio: &mut Studio,
     interrupt: &Interrupt,
 ) -> (Summary<'a>, Result<(), Failure>) {
-    let render = &options.render;
     let files = Arc::new(files);
     let mut keeper = render.checkpoint.as_ref().map(|_| Keeper::new(&files));
-    let mut display = display(options.progress, STEPS, &render.recipe.name);
+    let mut display = display(render.progress, STEPS, &render.recipe.name);
     let begin = Instant::now();
     warnings.iter().for_each(|warning| display.warn(warning));
     let (mut status, film) =
@@ -44,7 +43,7 @@ pub(super) fn render<'a>(
             Event::Status(_, status) if status.phase.is_over() => {}
             Event::Status(progressive, status) => {
                 assert!(
-                    options.crashes_at.is_none_or(|samples| status.samples_per_pixel < samples),
+                    render.crashes_at.is_none_or(|samples| status.samples_per_pixel < samples),
                     "injected fault"
                 );
                 let warning = keeper.as_mut().and_then(|keeper| keeper.look(progressive, status));
@@ -78,7 +77,7 @@ pub(super) fn render<'a>(
 
 /// The result of a render and of writing its files. `kept` is the number of samples per pixel in the checkpoint file.
 fn outcome(
-    render: &RenderOptions,
+    render: &BatchOptions,
     status: &Status,
     film: Option<&Film>,
     written: &Written,
@@ -107,7 +106,7 @@ fn outcome(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::batch::tests::batch;
+
     use crate::film::checkpoint;
     use crate::job::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
     use std::ops::Range;
@@ -145,11 +144,12 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let [out, film] = ["a.png", "a.exr"].map(|name| directory.path().join(name));
         let files = ["--out", out.to_str().unwrap(), "--checkpoint", film.to_str().unwrap()];
-        let options = batch(&[&["--samples", "64", "--device", "cpu"], &files[..]].concat());
+        let options =
+            crate::batch::tests::options(&[&["--samples", "64", "--device", "cpu"], &files[..]].concat());
         let interrupt = Interrupt::unheard();
         let mut studio =
             Studio::with_factory(Box::new(|_| Ok(Box::new(Failing))), &options.backend, &interrupt);
-        let files = Files::lock(&options.render).unwrap();
+        let files = Files::lock(&options).unwrap();
         let (_, outcome) = render(&options, files, None, &[], &mut studio, &interrupt);
         let failure = outcome.unwrap_err();
         let message = failure.to_string();

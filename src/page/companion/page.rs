@@ -32,7 +32,6 @@ pub fn render(site: &Site) -> Result<Page> {
     let chapters = html! {
         @for place in 0..site.chapters.len() { (section(site, place, &mut uses)?) }
     };
-    let chapters = numbered(&chapters.into_string());
     site.check(&uses)?;
     let mut stages: Vec<&Stage> =
         uses.figures.iter().flat_map(|figure| &figure.panels).map(Panel::stage).collect();
@@ -41,17 +40,8 @@ pub fn render(site: &Site) -> Result<Page> {
     stages.dedup();
     let live = web::live_data(stages.iter().copied())?;
     uses.pictures.push(Picture::small(cover_stage()));
-    let page = document(site, &PreEscaped(chapters), &PreEscaped(live))?;
+    let page = document(site, &chapters, &PreEscaped(live))?;
     Ok(Page { html: page.into_string(), stages, pictures: uses.pictures })
-}
-
-/// Numbers the figures.
-fn numbered(html: &str) -> String {
-    let mut parts = html.split(directive::NUMBER_MARK);
-    let first = parts.next().unwrap_or_default().to_owned();
-    (1..).zip(parts).fold(first, |html, (number, part)| {
-        html + &format!("<span class=\"figure-number\">Figure {number}.</span> {part}")
-    })
 }
 
 /// The last stage, whose picture opens the page.

@@ -36,6 +36,8 @@ pub struct Uses {
     pub pictures: Vec<Picture>,
     /// In the order of the page.
     pub figures: Vec<&'static Figure>,
+    /// How many figures have a number so far.
+    pub numbered_figures: usize,
     /// Existing anchors.
     pub anchors: BTreeSet<String>,
     /// Linked anchors, each with file and line.
