@@ -29,7 +29,9 @@ fn rows() -> impl Iterator<Item = Command> {
 
 fn heading_of(row: Command) -> String {
     match row {
-        Command::Stage(stage) if stage.is_in_book() => format!("{} {}", stage.chapter(), stage.chapter_title),
+        Command::Stage(stage) if stage.is_in_book() => {
+            format!("{} {}", stage.chapter(), stage.chapter_title())
+        }
         _ => LAST_HEADING.to_owned(),
     }
 }
@@ -37,7 +39,7 @@ fn heading_of(row: Command) -> String {
 /// The words by which a row is found; what is new only if nothing has them in its name.
 fn words_of(row: Command, is_long: bool) -> String {
     let more = match row {
-        Command::Stage(Stage { section_title, id, .. }) => format!("{section_title} {id}"),
+        Command::Stage(stage) => format!("{} {}", stage.section_title(), stage.id),
         _ => String::new(),
     };
     let help = if is_long { row.help() } else { "" };

@@ -1,6 +1,6 @@
 //! The films and the picture of a render: locked and checked before it begins, and written at its end.
 
-use crate::cli::{RenderOptions, command_line};
+use crate::cli::{BatchOptions, command_line};
 use crate::denoise::{self, DenoisedError};
 use crate::film::{Description, Film, LockedFilm, SampleRanges, checkpoint, key};
 use crate::job::output::{OutputFormat, write_image_as};
@@ -18,7 +18,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// The files of a render. No other run may write its films.
 pub(super) struct Files {
-    pub render: RenderOptions,
+    pub render: BatchOptions,
     /// That of `--checkpoint` first, if there is one.
     films: Vec<(PathBuf, Mutex<LockedFilm>)>,
     /// Samples per pixel of the film that the render continues.
@@ -43,7 +43,7 @@ impl Files {
     ///
     /// # Errors
     /// [`Failure::Input`] if another run writes one of them.
-    pub fn lock(render: &RenderOptions) -> Result<Files, Failure> {
+    pub fn lock(render: &BatchOptions) -> Result<Files, Failure> {
         let out = Some(&render.out).filter(|out| is_film(out) && Some(*out) != render.checkpoint.as_ref());
         let locked = |path: &PathBuf| Ok((path.clone(), Mutex::new(LockedFilm::new(path)?)));
         let films = render.checkpoint.iter().chain(out).map(locked).collect::<Result<_, LockedError>>();
@@ -200,7 +200,7 @@ fn caught<T>(path: &Path, write: impl FnOnce() -> Result<T, String>) -> Result<T
 }
 
 /// The directories of the files that the render writes.
-fn directories(render: &RenderOptions) -> Vec<PathBuf> {
+fn directories(render: &BatchOptions) -> Vec<PathBuf> {
     let files = [Some(&render.out), render.checkpoint.as_ref()];
     let directory = |path: &PathBuf| match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
@@ -220,7 +220,7 @@ mod tests {
     use std::ops::Range;
 
     /// Writes a film of `render` with these samples to `path`.
-    fn put(path: &Path, render: &RenderOptions, samples: Range<u64>) -> Film {
+    fn put(path: &Path, render: &BatchOptions, samples: Range<u64>) -> Film {
         let mut film = render.job.new_film();
         film.record(samples, 0).unwrap();
         let description = Files::lock(render).unwrap().described(&film, &Status::default());
@@ -228,7 +228,7 @@ mod tests {
         film
     }
 
-    fn write_two_samples(render: &RenderOptions) -> (Film, Written, String) {
+    fn write_two_samples(render: &BatchOptions) -> (Film, Written, String) {
         let mut film = render.job.new_film();
         film.record(0..2, 0).unwrap();
         let written = Files::lock(render).unwrap().write(&film, &Status::default(), |_| {});

@@ -6,12 +6,12 @@ use super::studio::{Event, Studio};
 use super::{ended, write_figures};
 use crate::cli::terminal::{Display, print_beside};
 use crate::cli::{FramesOptions, command_line};
-use crate::film::{Film, key};
+use crate::film::key;
 use crate::job::output::write_image;
 use crate::job::recipe::Recipe;
 use crate::job::saved::is_whole_frame;
+use crate::progressive::Phase;
 use crate::progressive::describe::{SOFTWARE, counted, describe, seconds};
-use crate::progressive::{Phase, Status};
 use crate::system::console::printable;
 use crate::system::failure::Failure;
 use crate::system::files::{ShownPath, check_writable, make_directory};
@@ -124,36 +124,32 @@ impl Run<'_> {
             }
             Event::Status(_, status) => {
                 let (done, count) = (self.done(), self.options.frames.len() as u32);
-                let took = (self.rendering, self.rendered);
-                let progress = || so_far(frame, status.samples_per_pixel, [done, count], took);
-                self.display.update(u64::from(done), progress);
+                let left = match self.rendered {
+                    0 => String::new(),
+                    rendered => {
+                        let left = self.rendering / rendered * (count - done);
+                        format!(", {} left", seconds(left.as_secs_f64()))
+                    }
+                };
+                self.display.update(u64::from(done), || {
+                    let samples = status.samples_per_pixel;
+                    format!("frame {frame}: {done} of {count} frames done, {samples} spp{left}")
+                });
             }
         });
         if let Phase::Failed(reason) = &status.phase {
             journal::write_report();
             return Err(anyhow!("{reason}"));
         }
-        match film.filter(|film| film.sample_count() >= recipe.samples_per_pixel) {
-            Some(film) => self.write(frame, recipe, path, &film, &status).map(|()| true),
-            None => Ok(false),
-        }
-    }
-
-    fn write(
-        &self,
-        frame: u32,
-        recipe: &Recipe,
-        path: &Path,
-        film: &Film,
-        status: &Status,
-    ) -> anyhow::Result<()> {
+        let whole = film.filter(|film| film.sample_count() >= recipe.samples_per_pixel);
+        let Some(film) = whole else { return Ok(false) };
         let _writing = self.interrupt.while_writing(path.shown());
-        let mut description = describe(recipe, self.options.stage, film, status, Some(0.0));
+        let mut description = describe(recipe, self.options.stage, &film, &status, Some(0.0));
         description.set(key::FRAME, frame);
         description.set(key::COMMAND, command_line());
-        write_image(path, film, recipe.rules.transfer, &description)?;
+        write_image(path, &film, recipe.rules.transfer, &description)?;
         log::info!("wrote {}", path.display());
-        Ok(())
+        Ok(true)
     }
 
     /// The first and the last finished file. Frames finish in order.
@@ -225,18 +221,4 @@ fn broken_off(error: anyhow::Error, frame: u32, done: u32) -> Failure {
     let done = counted(u64::from(done), "frame");
     let context = format!("frame {frame} failed; {done} before it stay, and the same command continues");
     Failure::BrokeOff(error.context(context))
-}
-
-/// The progress of the animation: current frame and its samples, frames done and in total, and how long rendering took
-/// for how many frames.
-fn so_far(
-    frame: u32,
-    samples: u64,
-    [done, count]: [u32; 2],
-    (rendering, rendered): (Duration, u32),
-) -> String {
-    let each = rendering.as_secs_f64() / f64::from(rendered.max(1));
-    let left = format!(", {} left", seconds(each * f64::from(count.saturating_sub(done))));
-    let left = if rendered == 0 { String::new() } else { left };
-    format!("frame {frame}: {done} of {count} frames done, {samples} spp{left}")
 }

@@ -22,14 +22,14 @@ use crate::backends;
 use crate::cli::BatchOptions;
 use crate::cli::terminal::{self, print, print_beside};
 use crate::job::recipe::{Recipe, file};
-use crate::job::saved;
+use crate::job::saved::{self, SavedFilm};
 use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
 use crate::system::console;
 use crate::system::failure::Failure;
 use crate::system::files::{STANDARD, ShownPath, check_replaceable, check_writable, write_text};
 use crate::system::interrupt::Interrupt;
-use picture::Picture;
+use files::Files;
 use std::path::Path;
 use std::process::ExitCode;
 use summary::SCHEMA;
@@ -41,24 +41,23 @@ use summary::SCHEMA;
 /// are in its files; [`Failure::Run`] otherwise.
 pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     check_before(&options)?;
-    let mut picture = Picture::lock(&options.render)?;
-    if let Some(path) = &options.render.resume {
-        picture.resumed = Some(saved::resume(path, &options.render.job).map_err(Failure::input)?);
-    }
-    render(&options, picture)
+    let files = Files::lock(&options)?;
+    let resumed = options.resume.as_ref().map(|path| saved::resume(path, &options.job));
+    render(&options, files, resumed.transpose().map_err(Failure::input)?)
 }
 
 /// Renders a picture, whose files are locked.
-fn render(options: &BatchOptions, mut picture: Picture) -> Result<ExitCode, Failure> {
-    picture.check()?;
+fn render(options: &BatchOptions, mut files: Files, resumed: Option<SavedFilm>) -> Result<ExitCode, Failure> {
+    let warnings = files.check(resumed.as_ref())?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let mut studio = Studio::open(&options.backend, &interrupt)?;
     if let Some(path) = &options.save_scene {
-        write_text(path, &file::to_toml(&options.render.recipe)).map_err(Failure::run)?;
+        write_text(path, &file::to_toml(&options.recipe)).map_err(Failure::run)?;
     }
-    let has_stdout = options.render.out == Path::new(STANDARD);
+    let has_stdout = options.out == Path::new(STANDARD);
     let beside = if has_stdout { Some(Path::new(STANDARD)) } else { options.json.as_deref() };
-    let (summary, outcome) = picture.render(options, &mut studio, &interrupt);
+    let film = resumed.map(|saved| saved.film);
+    let (summary, outcome) = picture::render(options, files, film, &warnings, &mut studio, &interrupt);
     let printed = print_beside(beside, &summary.to_string());
     let figures = printed.and(write_figures(&summary.json(), options.json.as_deref()));
     ended(outcome.err(), figures, &interrupt)
@@ -98,13 +97,13 @@ pub fn save_scene(recipe: &Recipe, path: &Path) -> Result<ExitCode, Failure> {
 
 /// Checks everything that could otherwise fail after rendering.
 fn check_before(options: &BatchOptions) -> Result<(), Failure> {
-    let BatchOptions { render, save_scene, json, .. } = options;
-    let files = [Some(&render.out), render.checkpoint.as_ref(), save_scene.as_ref()].into_iter().flatten();
+    let BatchOptions { out, checkpoint, save_scene, json, .. } = options;
+    let files = [Some(out), checkpoint.as_ref(), save_scene.as_ref()].into_iter().flatten();
     for path in files.chain(json) {
         let check = if files::is_film(path) { check_replaceable } else { check_writable };
         check(path).map_err(Failure::input)?;
     }
-    render.job.check_memory(1).map_err(Failure::input)
+    options.job.check_memory(1).map_err(Failure::input)
 }
 
 /// Prints the scenes, stages and devices to choose from.
@@ -131,20 +130,15 @@ pub fn list() -> Result<ExitCode, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{RenderOptions, Request, parse};
+    use crate::cli::{Request, parse};
     use std::sync::atomic::Ordering;
 
     /// The options of a batch render of 4x3 pixels with these `flags`.
-    pub(super) fn batch(flags: &[&str]) -> BatchOptions {
+    pub(super) fn options(flags: &[&str]) -> BatchOptions {
         let arguments = ["weekender", "--batch", "--size", "4x3", "--progress", "off"];
         let arguments = arguments.into_iter().chain(flags.iter().copied());
         let Request::Batch(options) = parse(arguments.map(Into::into)).unwrap() else { panic!("{flags:?}") };
         *options
-    }
-
-    /// The options of its picture.
-    pub(super) fn options(flags: &[&str]) -> RenderOptions {
-        batch(flags).render
     }
 
     #[test]

@@ -1,11 +1,11 @@
 //! `weekender render-part`: renders a part of a plan. The command can be repeated at any time: it continues from the
 //! part's last checkpoint, and ends at once if the part is complete.
 
-use super::picture::Picture;
+use super::files::Files;
 use super::summary::Summary;
 use super::{check_before, render, write_figures};
 use crate::cli::terminal::print_beside;
-use crate::cli::{BatchOptions, PartOptions, RenderOptions, check_paths};
+use crate::cli::{BatchOptions, PartOptions, check_paths};
 use crate::film::CheckpointError;
 use crate::job::output::OutputFormat;
 use crate::job::plan::{Part, Plan};
@@ -36,17 +36,15 @@ fn render_samples(plan: &Plan, index: usize, options: PartOptions) -> Result<Exi
     let part = &plan.manifest.parts[index];
     let ([start, end], path) = (part.samples, plan.beside(&part.file));
     let batch = BatchOptions {
-        render: RenderOptions {
-            recipe: plan.recipe.clone(),
-            job: plan.job.clone(),
-            stage: plan.stage(),
-            plan: progressive::Plan { first_sample: start, ..super::Studio::plan(end) },
-            out: path.clone(),
-            format: OutputFormat::Exr,
-            checkpoint: Some(path.clone()),
-            every: options.every,
-            resume: Some(path.clone()),
-        },
+        recipe: plan.recipe.clone(),
+        job: plan.job.clone(),
+        stage: plan.stage(),
+        plan: progressive::Plan { first_sample: start, ..super::Studio::plan(end) },
+        out: path.clone(),
+        format: OutputFormat::Exr,
+        checkpoint: Some(path.clone()),
+        every: options.every,
+        resume: Some(path.clone()),
         save_scene: None,
         backend: options.backend,
         progress: options.progress,
@@ -54,24 +52,21 @@ fn render_samples(plan: &Plan, index: usize, options: PartOptions) -> Result<Exi
         crashes_at: None,
     };
     check_before(&batch)?;
-    let mut picture = Picture::lock(&batch.render)?;
+    let files = Files::lock(&batch)?;
     match find(&path, plan, part)? {
         Some(found) if part.missing(found.film.samples()) == 0 => {
             let text = format!("part {index} is whole: samples {start}..{end} in {}\n", path.shown());
             print_beside(batch.json.as_deref(), &text).map_err(Failure::Run)?;
-            let figures = summary_of_whole(&batch.render, &found).json();
+            let figures = summary_of_whole(&batch, &found).json();
             write_figures(&figures, batch.json.as_deref()).map_err(Failure::Run)?;
             Ok(ExitCode::SUCCESS)
         }
-        found => {
-            picture.resumed = found;
-            render(&batch, picture)
-        }
+        found => render(&batch, files, found),
     }
 }
 
 /// Figures of a part with nothing left to render.
-fn summary_of_whole<'a>(render: &'a RenderOptions, found: &SavedFilm) -> Summary<'a> {
+fn summary_of_whole<'a>(render: &'a BatchOptions, found: &SavedFilm) -> Summary<'a> {
     let film = &found.film;
     let status = Status {
         phase: Phase::Done(EndReason::Samples),

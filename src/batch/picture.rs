@@ -5,9 +5,8 @@ use super::keeping::Keeper;
 use super::progress::{STEPS, display, show};
 use super::studio::{Event, Studio};
 use super::summary::Summary;
-use crate::cli::{BatchOptions, RenderOptions};
+use crate::cli::BatchOptions;
 use crate::film::Film;
-use crate::job::saved::SavedFilm;
 use crate::progressive::{Phase, Status};
 use crate::system::clock::Instant;
 use crate::system::failure::Failure;
@@ -18,95 +17,67 @@ use anyhow::anyhow;
 use std::path::Path;
 use std::sync::Arc;
 
-/// A picture to render, whose films are locked.
-pub(super) struct Picture<'a> {
-    pub render: &'a RenderOptions,
-    /// The film to continue.
-    pub resumed: Option<SavedFilm>,
+/// Renders a picture, from the film to continue, and writes its files. On any failure, the samples rendered so far are
+/// kept. `warnings` are printed before it begins.
+pub(super) fn render<'a>(
+    render: &'a BatchOptions,
     files: Files,
-    /// Warnings to print before it begins.
-    warnings: Vec<String>,
-}
-
-impl<'a> Picture<'a> {
-    /// Locks the films. A film to be resumed must be read after this.
-    ///
-    /// # Errors
-    /// [`Failure::Input`] if another run writes one of them.
-    pub fn lock(render: &'a RenderOptions) -> Result<Self, Failure> {
-        Ok(Picture { render, resumed: None, files: Files::lock(render)?, warnings: Vec::new() })
+    film: Option<Film>,
+    warnings: &[String],
+    studio: &mut Studio,
+    interrupt: &Interrupt,
+) -> (Summary<'a>, Result<(), Failure>) {
+    let files = Arc::new(files);
+    let mut keeper = render.checkpoint.as_ref().map(|_| Keeper::new(&files));
+    let mut display = display(render.progress, STEPS, &render.recipe.name);
+    let begin = Instant::now();
+    warnings.iter().for_each(|warning| display.warn(warning));
+    let (mut status, film) =
+        studio.render(render.job.clone(), render.plan.clone(), film, |event| match event {
+            Event::Warning(warning) => display.warn(warning),
+            Event::Stopping => {
+                let hint = "; press Ctrl-C again to exit at once without writing";
+                let hint = if interrupt.is_by_hand() { hint } else { "" };
+                display.say(&format!("finishing the current samples and writing the files{hint}"));
+            }
+            Event::Status(_, status) if status.phase.is_over() => {}
+            Event::Status(progressive, status) => {
+                assert!(
+                    render.crashes_at.is_none_or(|samples| status.samples_per_pixel < samples),
+                    "injected fault"
+                );
+                let warning = keeper.as_mut().and_then(|keeper| keeper.look(progressive, status));
+                warning.iter().for_each(|warning| display.warn(warning));
+                show(&mut display, &render.plan, status, begin.elapsed());
+            }
+        });
+    let mut names = vec![render.out.shown()];
+    names.extend(render.checkpoint.as_ref().filter(|path| **path != render.out).map(ShownPath::shown));
+    let writing = interrupt.while_writing(names.join(" and "));
+    let begin = Instant::now();
+    let kept = keeper.and_then(Keeper::finish);
+    let mut written = Written::default();
+    if let Some(film) = film.as_ref().filter(|film| film.sample_count() > 0) {
+        let say = |path: &Path| display.announce(STEPS, || format!("writing {}", path.shown()));
+        written = files.write(film, &status, say);
     }
-
-    /// Checks the files that the render would replace.
-    ///
-    /// # Errors
-    /// [`Failure::Input`] if one must not be replaced.
-    pub fn check(&mut self) -> Result<(), Failure> {
-        self.warnings = self.files.check(self.resumed.as_ref())?;
-        Ok(())
+    drop(writing);
+    written.files.iter().for_each(|path| log::info!("wrote {}", path.display()));
+    written.notes.iter().for_each(|note| display.warn(note));
+    status.messages = [warnings, &status.messages, &written.notes].concat();
+    display.clear();
+    if matches!(status.phase, Phase::Failed(_)) {
+        journal::write_report();
     }
-
-    /// Renders the picture and writes its files. On any failure, the samples rendered so far are kept.
-    pub fn render(
-        self,
-        options: &BatchOptions,
-        studio: &mut Studio,
-        interrupt: &Interrupt,
-    ) -> (Summary<'a>, Result<(), Failure>) {
-        let Picture { render, resumed, files, warnings } = self;
-        let files = Arc::new(files);
-        let mut keeper = render.checkpoint.as_ref().map(|_| Keeper::new(&files));
-        let mut display = display(options.progress, STEPS, &render.recipe.name);
-        let begin = Instant::now();
-        warnings.iter().for_each(|warning| display.warn(warning));
-        let film = resumed.map(|saved| saved.film);
-        let (mut status, film) =
-            studio.render(render.job.clone(), render.plan.clone(), film, |event| match event {
-                Event::Warning(warning) => display.warn(warning),
-                Event::Stopping => {
-                    let hint = "; press Ctrl-C again to exit at once without writing";
-                    let hint = if interrupt.is_by_hand() { hint } else { "" };
-                    display.say(&format!("finishing the current samples and writing the files{hint}"));
-                }
-                Event::Status(_, status) if status.phase.is_over() => {}
-                Event::Status(progressive, status) => {
-                    assert!(
-                        options.crashes_at.is_none_or(|samples| status.samples_per_pixel < samples),
-                        "injected fault"
-                    );
-                    let warning = keeper.as_mut().and_then(|keeper| keeper.look(progressive, status));
-                    warning.iter().for_each(|warning| display.warn(warning));
-                    show(&mut display, &render.plan, status, begin.elapsed());
-                }
-            });
-        let mut names = vec![render.out.shown()];
-        names.extend(render.checkpoint.as_ref().filter(|path| **path != render.out).map(ShownPath::shown));
-        let writing = interrupt.while_writing(names.join(" and "));
-        let begin = Instant::now();
-        let kept = keeper.and_then(Keeper::finish);
-        let mut written = Written::default();
-        if let Some(film) = film.as_ref().filter(|film| film.sample_count() > 0) {
-            let say = |path: &Path| display.announce(STEPS, || format!("writing {}", path.shown()));
-            written = files.write(film, &status, say);
-        }
-        drop(writing);
-        written.files.iter().for_each(|path| log::info!("wrote {}", path.display()));
-        written.notes.iter().for_each(|note| display.warn(note));
-        status.messages = [&warnings[..], &status.messages, &written.notes].concat();
-        display.clear();
-        if matches!(status.phase, Phase::Failed(_)) {
-            journal::write_report();
-        }
-        let outcome = outcome(render, &status, film.as_ref(), &written, kept);
-        let samples = film.map(|film| film.samples().to_string());
-        let (denoised, writing) = (written.denoised, begin.elapsed());
-        (Summary { render, samples, status, denoised, files: written.files, writing }, outcome)
-    }
+    let outcome = outcome(render, &status, film.as_ref(), &written, kept);
+    let samples = film.map(|film| film.samples().to_string());
+    let (denoised, writing) = (written.denoised, begin.elapsed());
+    (Summary { render, samples, status, denoised, files: written.files, writing }, outcome)
 }
 
 /// The result of a render and of writing its files. `kept` is the number of samples per pixel in the checkpoint file.
 fn outcome(
-    render: &RenderOptions,
+    render: &BatchOptions,
     status: &Status,
     film: Option<&Film>,
     written: &Written,
@@ -135,7 +106,7 @@ fn outcome(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::batch::tests::batch;
+
     use crate::film::checkpoint;
     use crate::job::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
     use std::ops::Range;
@@ -173,12 +144,13 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let [out, film] = ["a.png", "a.exr"].map(|name| directory.path().join(name));
         let files = ["--out", out.to_str().unwrap(), "--checkpoint", film.to_str().unwrap()];
-        let options = batch(&[&["--samples", "64", "--device", "cpu"], &files[..]].concat());
+        let options =
+            crate::batch::tests::options(&[&["--samples", "64", "--device", "cpu"], &files[..]].concat());
         let interrupt = Interrupt::unheard();
         let mut studio =
             Studio::with_factory(Box::new(|_| Ok(Box::new(Failing))), &options.backend, &interrupt);
-        let picture = Picture::lock(&options.render).unwrap();
-        let (_, outcome) = picture.render(&options, &mut studio, &interrupt);
+        let files = Files::lock(&options).unwrap();
+        let (_, outcome) = render(&options, files, None, &[], &mut studio, &interrupt);
         let failure = outcome.unwrap_err();
         let message = failure.to_string();
         assert!(matches!(failure, Failure::BrokeOff(_)), "{message}");

@@ -17,7 +17,10 @@ pub(super) fn display(choice: ProgressChoice, steps: u64, name: &str) -> Display
 /// Shows the state of a render that has taken `elapsed` so far.
 pub(super) fn show(display: &mut Display, plan: &Plan, status: &Status, elapsed: Duration) {
     let left = seconds_left(plan, status);
-    display.update(step(elapsed, left), || so_far(status, elapsed, left));
+    let done = elapsed.as_secs_f64();
+    // The first step until the end can be predicted.
+    let share = left.map_or(0.0, |left| done / (done + left).max(f64::MIN_POSITIVE));
+    display.update((share * STEPS as f64) as u64, || so_far(status, elapsed, left));
 }
 
 /// The render's progress. `elapsed` is the time since its start, and `left` the seconds to its end, if predictable.
@@ -33,13 +36,6 @@ fn so_far(status: &Status, elapsed: Duration, left: Option<f64>) -> String {
         seconds(elapsed.as_secs_f64()),
         status.paths_per_second() / 1e6,
     )
-}
-
-/// The step of the bar: the first one until the end can be predicted.
-fn step(elapsed: Duration, left: Option<f64>) -> u64 {
-    let done = elapsed.as_secs_f64();
-    let share = left.map_or(0.0, |left| done / (done + left).max(f64::MIN_POSITIVE));
-    (share * STEPS as f64) as u64
 }
 
 /// Seconds until the first stop condition is met, if that can be predicted.

@@ -1,6 +1,6 @@
 //! The final figures of a picture, as text and as JSON.
 
-use crate::cli::RenderOptions;
+use crate::cli::BatchOptions;
 use crate::denoise::DenoisedError;
 use crate::progressive::describe::{counted, seconds};
 use crate::progressive::{Contribution, Phase, Status};
@@ -17,7 +17,7 @@ pub(super) const SCHEMA: u32 = 1;
 /// Time and quality of one picture. Times and counts are those of this run; samples per pixel, rejected samples and the
 /// estimates are those of the film, including its earlier samples.
 pub(super) struct Summary<'a> {
-    pub render: &'a RenderOptions,
+    pub render: &'a BatchOptions,
     /// The samples in the film.
     pub samples: Option<String>,
     pub status: Status,

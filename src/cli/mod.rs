@@ -22,7 +22,7 @@ pub use direct::{
 };
 pub use paths::{check_outputs, check_paths};
 pub use plan::{PartOptions, PlanOptions};
-pub use render::{BatchOptions, RenderOptions, WindowOptions};
+pub use render::{BatchOptions, WindowOptions};
 pub use report::ReportOptions;
 pub use values::{DrawWith, ProgressChoice};
 

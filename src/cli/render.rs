@@ -107,19 +107,6 @@ pub(super) struct FileFlags {
     pub json: Option<PathBuf>,
 }
 
-/// Options of `--batch`.
-#[derive(Debug)]
-pub struct BatchOptions {
-    pub render: RenderOptions,
-    /// A scene file to write as well.
-    pub save_scene: Option<PathBuf>,
-    pub backend: BackendChoice,
-    pub progress: ProgressChoice,
-    pub json: Option<PathBuf>,
-    /// Samples per pixel at which the program panics (fault injection).
-    pub crashes_at: Option<u64>,
-}
-
 /// Options of the window.
 #[derive(Clone, Debug)]
 pub struct WindowOptions {
@@ -155,9 +142,9 @@ pub struct WindowOptions {
     pub crashes_at: Option<u64>,
 }
 
-/// A picture to render.
+/// Options of `--batch`.
 #[derive(Clone, Debug)]
-pub struct RenderOptions {
+pub struct BatchOptions {
     pub recipe: Recipe,
     /// The validated job of the recipe.
     pub job: RenderJob,
@@ -174,6 +161,13 @@ pub struct RenderOptions {
     pub every: Duration,
     /// The film to resume.
     pub resume: Option<PathBuf>,
+    /// A scene file to write as well.
+    pub save_scene: Option<PathBuf>,
+    pub backend: BackendChoice,
+    pub progress: ProgressChoice,
+    pub json: Option<PathBuf>,
+    /// Samples per pixel at which the program panics (fault injection).
+    pub crashes_at: Option<u64>,
 }
 
 /// Validates the flags without a subcommand.
@@ -196,7 +190,7 @@ pub(super) fn request(mut flags: RenderFlags, matches: &ArgMatches) -> Result<Re
                 sources::picture(&flags.picture, &flags.samples, flags.files.resume.as_deref())?;
             Ok(Request::SaveScene(Box::new(chosen.recipe), path.clone()))
         }
-        (true, _) => batch(flags),
+        (true, _) => Ok(Request::Batch(Box::new(batch(flags)?))),
     }
 }
 
@@ -233,28 +227,13 @@ fn window(flags: RenderFlags, matches: &ArgMatches) -> Result<WindowOptions> {
     })
 }
 
-fn batch(flags: RenderFlags) -> Result<Request> {
+fn batch(flags: RenderFlags) -> Result<BatchOptions> {
     let RenderFlags { picture, samples, files, .. } = &flags;
-    let chosen = sources::picture(picture, samples, files.resume.as_deref())?;
-    let name = chosen.0.stage.map_or(chosen.0.recipe.name.as_str(), |stage| stage.id);
+    let (ChosenRecipe { recipe, stage }, job) = sources::picture(picture, samples, files.resume.as_deref())?;
+    let name = stage.map_or(recipe.name.as_str(), |stage| stage.id);
     let out = files.out.clone().unwrap_or_else(|| format!("{}.png", plain_name(name)).into());
     check_paths(&flags, Some(&out))?;
-    Ok(Request::Batch(Box::new(BatchOptions {
-        render: render(chosen, &flags, out)?,
-        backend: flags.backend,
-        progress: flags.progress,
-        save_scene: flags.files.save_scene,
-        json: flags.files.json,
-        crashes_at: flags.simulate_crash,
-    })))
-}
-
-fn render(
-    (chosen, job): (ChosenRecipe, RenderJob),
-    flags: &RenderFlags,
-    out: PathBuf,
-) -> Result<RenderOptions> {
-    let (files, named) = (&flags.files, OutputFormat::from_path(&out));
+    let named = OutputFormat::from_path(&out);
     let format = match (files.format, named) {
         (Some(format), Ok(named)) if format != named => bail!(
             "--format {} contradicts the name {}; leave one of them out",
@@ -274,16 +253,21 @@ fn render(
     {
         bail!("{flag} needs --estimate-error on: it compares the film's two halves");
     }
-    Ok(RenderOptions {
-        plan: plan(flags, &chosen.recipe),
-        recipe: chosen.recipe,
+    Ok(BatchOptions {
+        plan: plan(&flags, &recipe),
+        recipe,
         job,
-        stage: chosen.stage,
+        stage,
         out,
         format,
-        checkpoint: files.checkpoint.clone(),
-        every: files.every,
-        resume: files.resume.clone(),
+        checkpoint: flags.files.checkpoint,
+        every: flags.files.every,
+        resume: flags.files.resume,
+        save_scene: flags.files.save_scene,
+        backend: flags.backend,
+        progress: flags.progress,
+        json: flags.files.json,
+        crashes_at: flags.simulate_crash,
     })
 }
 
@@ -314,9 +298,9 @@ mod tests {
     use std::path::Path;
     use std::time::Duration;
 
-    fn render(line: &str) -> super::RenderOptions {
+    fn render(line: &str) -> super::BatchOptions {
         match parse(format!("weekender --batch {line}").split(' ').map(Into::into)).unwrap() {
-            Request::Batch(options) => options.render,
+            Request::Batch(options) => *options,
             other => panic!("{other:?}"),
         }
     }

@@ -68,11 +68,21 @@ impl Camera {
         position(|| "look_at".to_owned(), self.look_at)?;
         finite_vector(|| "vup".to_owned(), self.vup)?;
         if self.look_from == self.look_at {
-            return Err(SceneError::NoDirection { at: self.look_from });
+            let at = self.look_from.to_array();
+            return Err(SceneError(format!(
+                "look_from and look_at are both {at:?}, so there is no direction to look in; move one of them"
+            )));
         }
         let w = unit(self.look_from - self.look_at);
         if right(self.vup, w).is_none() {
-            return Err(SceneError::NoUp { vup: self.vup, remedy: least_aligned(w) });
+            let reason = match self.vup {
+                DVec3::ZERO => "has no direction",
+                _ => "is parallel to the view, so nothing is up in the picture",
+            };
+            let [vup, other] = [self.vup, least_aligned(w)].map(|vector| vector.to_array());
+            return Err(SceneError(format!(
+                "vup is {vup:?}, which {reason}; use another, such as {other:?}"
+            )));
         }
         let named = |name: &'static str| move || name.to_owned();
         let [narrowest, widest] = VFOV_LIMITS_DEGREES;
@@ -80,7 +90,7 @@ impl Camera {
             named("vfov_degrees"),
             self.vfov_degrees,
             (narrowest..=widest).contains(&self.vfov_degrees),
-            format!("within {narrowest} and {widest} degrees"),
+            &format!("within {narrowest} and {widest} degrees"),
             "90 is wide, 20 is a portrait lens",
         )?;
         allowed(
@@ -143,7 +153,7 @@ fn least_aligned(w: DVec3) -> DVec3 {
 }
 
 /// Normalises `v`. Dividing by the largest component first keeps the squares from overflowing and underflowing.
-fn unit(v: DVec3) -> DVec3 {
+pub(super) fn unit(v: DVec3) -> DVec3 {
     (v / v.abs().max_element()).normalize()
 }
 

@@ -1,62 +1,20 @@
 //! Errors in scenes, worded so that the reader can fix them.
 
 use glam::DVec3;
-use std::borrow::Cow;
 use thiserror::Error;
 
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum SceneError {
-    #[error("{what} is {value}, but must be a finite number")]
-    NotFinite { what: String, value: f64 },
-    #[error("{what} is {value:?}, but must be {limit}; {remedy}")]
-    OutOfRange {
-        what: String,
-        value: f64,
-        /// The range, spelled out.
-        limit: Cow<'static, str>,
-        /// What the user should change.
-        remedy: &'static str,
-    },
-    #[error("{what} is {:?}, but each component must be within 0 and {limit}", value.to_array())]
-    Colour {
-        what: String,
-        /// Linear RGB.
-        value: DVec3,
-        limit: f64,
-    },
-    /// A sphere names a material that does not exist.
-    #[error(
-        "spheres[{sphere}].material is {}, which is not among the materials; add [materials.{}] or use one that exists",
-        toml_string(material),
-        toml_key(material)
-    )]
-    MissingMaterial {
-        sphere: usize,
-        /// The name that the sphere gives.
-        material: String,
-    },
-    #[error("two materials are called {name:?}; rename one")]
-    DuplicateMaterial { name: String },
-    #[error(
-        "look_from and look_at are both {:?}, so there is no direction to look in; move one of them",
-        at.to_array()
-    )]
-    NoDirection {
-        /// Scene units.
-        at: DVec3,
-    },
-    /// The up vector has no direction, or the view's.
-    #[error(
-        "vup is {:?}, {}; use another, such as {:?}",
-        vup.to_array(),
-        if *vup == DVec3::ZERO { "which has no direction" } else { "which is parallel to the view, so nothing is up in the picture" },
-        remedy.to_array()
-    )]
-    NoUp {
-        vup: DVec3,
-        /// A valid up vector for this view.
-        remedy: DVec3,
-    },
+/// What is wrong with a scene: the value, its limit and a remedy.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{0}")]
+pub struct SceneError(pub String);
+
+/// Sphere `index` names a material that does not exist.
+pub(crate) fn missing_material(index: usize, name: &str) -> SceneError {
+    let key = toml_key(name);
+    let name = toml_string(name);
+    SceneError(format!(
+        "spheres[{index}].material is {name}, which is not among the materials; add [materials.{key}] or use one that exists"
+    ))
 }
 
 /// A name as a scene file's key, quoted if necessary.
@@ -87,7 +45,10 @@ pub const LENGTH_LIMIT: f64 = 1e18;
 // These checks run on millions of values, so the location's text is only built for an error.
 
 pub(super) fn finite(what: impl FnOnce() -> String, value: f64) -> Result<(), SceneError> {
-    if value.is_finite() { Ok(()) } else { Err(SceneError::NotFinite { what: what(), value }) }
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(SceneError(format!("{} is {value}, but must be a finite number", what())))
 }
 
 /// A finite number that `is_allowed`, or an error that names the `limit` and the `remedy`.
@@ -95,12 +56,14 @@ pub(super) fn allowed(
     what: impl Fn() -> String,
     value: f64,
     is_allowed: bool,
-    limit: impl Into<Cow<'static, str>>,
-    remedy: &'static str,
+    limit: &str,
+    remedy: &str,
 ) -> Result<(), SceneError> {
     finite(&what, value)?;
-    let error = || SceneError::OutOfRange { what: what(), value, limit: limit.into(), remedy };
-    if is_allowed { Ok(()) } else { Err(error()) }
+    if is_allowed {
+        return Ok(());
+    }
+    Err(SceneError(format!("{} is {value:?}, but must be {limit}; {remedy}", what())))
 }
 
 pub(super) fn finite_vector(what: impl Fn() -> String, value: DVec3) -> Result<(), SceneError> {
@@ -120,7 +83,10 @@ pub(super) fn position(what: impl Fn() -> String, value: DVec3) -> Result<(), Sc
 pub(super) fn colour(what: impl Fn() -> String, value: DVec3, limit: f64) -> Result<(), SceneError> {
     finite_vector(&what, value)?;
     if value.min_element() < 0.0 || value.max_element() > limit {
-        return Err(SceneError::Colour { what: what(), value, limit });
+        let (what, value) = (what(), value.to_array());
+        return Err(SceneError(format!(
+            "{what} is {value:?}, but each component must be within 0 and {limit}"
+        )));
     }
     Ok(())
 }

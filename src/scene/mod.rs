@@ -15,7 +15,7 @@ mod sphere;
 
 pub use camera::{Camera, CameraBasis, DEFOCUS_LIMIT_DEGREES, FOCUS_LIMITS, VFOV_LIMITS_DEGREES};
 pub use error::{LENGTH_LIMIT, SceneError};
-pub(crate) use error::{toml_key, toml_string};
+pub(crate) use error::{missing_material, toml_key, toml_string};
 pub use material::{Look, Material, NamedMaterial, Parameter, REFRACTION_INDEX_LIMITS};
 pub use pick::Pick;
 pub use sphere::{RADIUS_LIMITS, Sphere};
@@ -86,7 +86,7 @@ impl Scene {
         let mut names = HashSet::with_capacity(self.materials.len());
         for named in &self.materials {
             if !names.insert(named.name.as_str()) {
-                return Err(SceneError::DuplicateMaterial { name: named.name.clone() });
+                return Err(SceneError(format!("two materials are called {:?}; rename one", named.name)));
             }
             named.material.validate(format_args!("materials.{}", named.name))?;
         }

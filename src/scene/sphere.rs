@@ -1,7 +1,7 @@
 //! A sphere. (Book 1, section 5.)
 
 use super::SceneError;
-use super::error::{LENGTH_LIMIT, allowed, position};
+use super::error::{LENGTH_LIMIT, allowed, missing_material, position};
 use glam::DVec3;
 use std::ops::RangeInclusive;
 
@@ -30,7 +30,7 @@ impl Sphere {
         let is_allowed = RADIUS_LIMITS.contains(&self.radius);
         allowed(|| of("radius"), self.radius, is_allowed, "within 1e-18 and 1e18", remedy)?;
         if self.material >= material_count {
-            return Err(SceneError::MissingMaterial { sphere: index, material: self.material.to_string() });
+            return Err(missing_material(index, &self.material.to_string()));
         }
         Ok(())
     }

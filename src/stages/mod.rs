@@ -12,20 +12,19 @@ pub use sight::{Means, Sight};
 
 use crate::scene::{Camera, Scene};
 use crate::system::suggest::{or_nearest, similar_names};
-use std::fmt;
-use thiserror::Error;
+use anyhow::{Context, Result};
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 /// Web address of the book.
 pub const BOOK_URL: &str = "https://raytracing.github.io/books/RayTracingInOneWeekend.html";
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Stage {
     /// Identifier on the command line, in the window and in files. It never changes.
     pub id: &'static str,
     /// Section of the book, such as "11.4".
     pub section: &'static str,
-    pub section_title: &'static str,
-    pub chapter_title: &'static str,
     /// Weekender's own heading.
     pub title: &'static str,
     /// What the tracer can do from this stage on.
@@ -43,7 +42,7 @@ pub struct Stage {
     pub setup: Setup,
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Setup {
     /// Always gives the same scene.
     pub scene: fn() -> Scene,
@@ -61,10 +60,10 @@ impl Stage {
     pub const ALL: &'static [Stage] = table::STAGES;
 
     /// Finds a stage by id. The error suggests similar ids.
-    pub fn find(id: &str) -> Result<&'static Stage, UnknownStage> {
-        Self::ALL.iter().find(|stage| stage.id == id).ok_or_else(|| UnknownStage {
-            id: id.to_owned(),
-            near: similar_names(id, Self::ALL.iter().map(|stage| stage.id)),
+    pub fn find(id: &str) -> Result<&'static Stage> {
+        Self::ALL.iter().find(|stage| stage.id == id).with_context(|| {
+            let near = similar_names(id, Self::ALL.iter().map(|stage| stage.id));
+            format!("there is no stage {id:?}; {}", or_nearest(&near))
         })
     }
 
@@ -101,23 +100,34 @@ impl Stage {
         if self.next().is_none() { 1200 } else { 400 }
     }
 
+    pub fn section_title(&self) -> &'static str {
+        heading(self.section).unwrap_or_default()
+    }
+
+    pub fn chapter_title(&self) -> &'static str {
+        heading(self.chapter()).unwrap_or_default()
+    }
+
     /// Web address of the stage's section.
     pub fn url(&self) -> String {
-        book_url(self.chapter_title, Some(self.section_title))
+        book_url(self.section)
     }
 }
 
-/// Web address of a chapter or section, by heading.
-pub fn book_url(chapter: &str, section: Option<&str>) -> String {
-    // The book's anchors are headings in lower case without spaces.
-    let anchor = |heading: &str| heading.replace(' ', "").to_lowercase();
-    let section = section.map_or_else(String::new, |section| format!("/{}", anchor(section)));
-    format!("{BOOK_URL}#{}{section}", anchor(chapter))
+/// The book's heading of a chapter or section, such as "6" or "6.1".
+pub fn heading(number: &str) -> Option<&'static str> {
+    static HEADINGS: LazyLock<BTreeMap<String, String>> =
+        LazyLock::new(|| toml::from_str(include_str!("../../assets/book-headings.toml")).unwrap_or_default());
+    HEADINGS.get(number).map(String::as_str)
 }
 
-impl fmt::Debug for Stage {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Stage").field("id", &self.id).finish_non_exhaustive()
+/// Web address of a chapter or section.
+pub fn book_url(number: &str) -> String {
+    // The book's anchors are headings in lower case without spaces.
+    let anchor = |number| heading(number).unwrap_or_default().replace(' ', "").to_lowercase();
+    match number.split_once('.') {
+        Some((chapter, _)) => format!("{BOOK_URL}#{}/{}", anchor(chapter), anchor(number)),
+        None => format!("{BOOK_URL}#{}", anchor(number)),
     }
 }
 
@@ -128,10 +138,3 @@ impl PartialEq for Stage {
 }
 
 impl Eq for Stage {}
-
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("there is no stage {id:?}; {}", or_nearest(near))]
-pub struct UnknownStage {
-    pub id: String,
-    pub near: Vec<&'static str>,
-}

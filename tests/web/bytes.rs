@@ -1,6 +1,6 @@
 //! The script's own arithmetic, run by node: the camera, the bytes that sliders change, and the blocks of samples.
 
-use super::page::job_of;
+use super::page::{SCRIPT, job_of};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use glam::DVec3;
@@ -58,7 +58,7 @@ pub fn camera_of(json: &Value) -> Camera {
 fn told_by_node(input: &Value) -> Option<Value> {
     let directory = tempfile::tempdir().unwrap();
     let script = directory.path().join("live.mjs");
-    std::fs::write(&script, web::HOST_SCRIPT).unwrap();
+    std::fs::write(&script, SCRIPT).unwrap();
     let program = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/web/bytes.mjs");
     let mut node = Command::new("node");
     node.arg(program).arg(&script).stdin(Stdio::piped()).stdout(Stdio::piped());
@@ -283,7 +283,7 @@ fn orbits_keep_the_distance_and_never_turn_over() {
 #[test]
 fn a_page_can_hold_data_and_script() {
     let data = web::live_data(Stage::ALL).unwrap();
-    for text in [data.as_str(), web::HOST_SCRIPT] {
+    for text in [data.as_str(), SCRIPT] {
         assert!(!text.contains("</") && !text.contains("<!--"));
     }
     let json: Value = serde_json::from_str(&data).unwrap();

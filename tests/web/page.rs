@@ -6,6 +6,13 @@ use weekender::job::render::{RenderJob, RenderSettings, Renderer};
 use weekender::page::web;
 use weekender::stages::{Setup, Stage};
 
+/// The script of live figures.
+pub const SCRIPT: &str = concat!(
+    include_str!("../../assets/web/scene.js"),
+    include_str!("../../assets/web/film.js"),
+    include_str!("../../assets/web/live.js"),
+);
+
 /// A stage in a smaller picture of fewer samples.
 pub fn small(id: &str, [width, height]: [u32; 2], samples_per_pixel: u64) -> Stage {
     let stage = Stage::find(id).unwrap();
@@ -25,7 +32,7 @@ pub fn write(directory: &Path, figures: &[(&str, &[Stage])]) {
     let stages = || figures.iter().flat_map(|(_, stages)| *stages);
     stages().for_each(|stage| write_still(directory, stage));
     let figures: String = figures.iter().map(|(caption, stages)| figure(caption, stages)).collect();
-    let (style, script) = (web::HOST_STYLE, web::HOST_SCRIPT);
+    let (style, script) = (include_str!("../../assets/web/live.css"), SCRIPT);
     let data = web::live_data(stages()).unwrap();
     let page = format!(
         r#"<!DOCTYPE html>

@@ -50,7 +50,7 @@ fn assert_reproduced(harness: &Harness<'_, Window>) {
     let line = document.command_line(1, "cpu", None);
     match cli::parse(line.split_whitespace().map(Into::into)).unwrap() {
         Request::Batch(options) => {
-            assert_eq!(*options.render.job.camera(), document.acting_camera(), "{line}");
+            assert_eq!(*options.job.camera(), document.acting_camera(), "{line}");
         }
         other => panic!("{line}: {other:?}"),
     }

@@ -86,7 +86,7 @@ mod tests {
     /// The job that a command line renders.
     fn job_of(line: &str) -> RenderJob {
         match parse(line.replace('"', "").split_whitespace().map(Into::into)).unwrap() {
-            Request::Batch(options) => options.render.job.clone(),
+            Request::Batch(options) => options.job.clone(),
             other => panic!("{line}: {other:?}"),
         }
     }

@@ -1,11 +1,48 @@
 //! The glossary and references as HTML.
 
-use super::fault::Fault;
-use super::library::Entry;
+use super::library::{Entry, Fault};
 use super::prose;
-use super::reference::{Area, GLOSSARY, REFERENCES};
 use super::site::{Site, Uses};
 use maud::{Markup, html};
+use serde::Deserialize;
+
+pub const GLOSSARY: &str = "docs/companion/glossary.toml";
+
+pub const REFERENCES: &str = "docs/companion/references.toml";
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Term {
+    pub term: String,
+    /// Definition, in Markdown.
+    pub text: String,
+    pub area: Area,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum Area {
+    /// Light, pictures and noise.
+    Rendering,
+    /// Lanes, threads and devices.
+    Parallelism,
+    /// How numbers are stored and rounded.
+    Numbers,
+    /// Words of Rust, WGSL and C++.
+    Languages,
+}
+
+/// A work cited in the text.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Reference {
+    pub title: String,
+    pub authors: String,
+    pub year: u16,
+    pub url: String,
+    /// Where it appeared, and what it is good for.
+    pub note: String,
+}
 
 /// The terms with their definitions, by area. Each leads back to its first link in the chapters before.
 pub fn glossary(site: &Site, uses: &mut Uses) -> Result<Markup, Fault> {

@@ -1,7 +1,6 @@
 //! The page's chapters: Markdown files that start with a few facts.
 
-use super::fault::{Fault, line_of};
-use super::library::Library;
+use super::library::{Fault, Library, line_of};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 

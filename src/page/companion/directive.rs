@@ -16,12 +16,10 @@ use maud::{Markup, PreEscaped, html};
 /// The directives and their arguments. More lines hold a caption, or what to quote.
 const KNOWN: &str = "figure ID, code, mistakes STAGE, limits STAGE, denoised STAGE SAMPLES, table NAME, chart NAME, diagram NAME, timeline STAGE, glossary, references";
 
-/// Marks the place of a figure's number.
-pub const NUMBER_MARK: &str = "<!-- number -->";
-
-/// The caption of a figure that has a number.
-pub fn numbered(caption: &Markup) -> Markup {
-    html! { figcaption { (PreEscaped(NUMBER_MARK)) (caption) } }
+/// The caption of a figure with the next number.
+pub fn numbered(caption: &Markup, uses: &mut Uses) -> Markup {
+    uses.numbered_figures += 1;
+    html! { figcaption { span .figure-number { "Figure " (uses.numbered_figures) "." } " " (caption) } }
 }
 
 /// Code within a line, which does not break after the hyphens of a flag.
@@ -64,12 +62,14 @@ pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) ->
         ["denoised", stage, samples] => {
             let caption = caption()?.context("a figure of denoising needs a caption")?;
             let panels = pictures::denoised(stage, samples, uses)?;
-            Ok(html! { figure .figure .wide id={ "denoised-" (stage) } { (panels) (numbered(&caption)) } })
+            Ok(
+                html! { figure .figure .wide id={ "denoised-" (stage) } { (panels) (numbered(&caption, uses)) } },
+            )
         }
         ["table", name] => site.measured.table(name),
-        ["chart", name] => site.measured.chart(name),
-        ["diagram", name] => diagram(site, name, caption()?),
-        ["timeline", stage] => timeline::figure(stage),
+        ["chart", name] => site.measured.chart(name, uses),
+        ["diagram", name] => diagram(site, name, caption()?, uses),
+        ["timeline", stage] => timeline::figure(stage, uses),
         ["glossary"] => Ok(back_matter::glossary(site, uses)?),
         ["references"] => Ok(back_matter::references(site, uses)?),
         _ => bail!("{{{{{directive}}}}} is no directive; use one of {KNOWN}"),
@@ -118,7 +118,7 @@ fn figure(id: &str, caption: Option<Markup>, crop: Option<[f64; 4]>, uses: &mut 
             (numbered(&html! {
                 strong { (typographic(&figure.title)) "." } " "
                 (caption.unwrap_or_else(|| html! { (typographic(&figure.caption)) }))
-            }))
+            }, uses))
         }
     })
 }
@@ -158,7 +158,7 @@ fn code(site: &Site, place: &Place<'_>, wanted: &str) -> Result<Markup> {
 }
 
 /// Diagrams are SVG files that take their colours from the text around them. Without a caption, they have their title.
-fn diagram(site: &Site, name: &str, caption: Option<Markup>) -> Result<Markup> {
+fn diagram(site: &Site, name: &str, caption: Option<Markup>, uses: &mut Uses) -> Result<Markup> {
     let path = format!("{FOLDER}/diagrams/{name}.svg");
     // The line to name is the directive's.
     let text = site.library.read(&path).map_err(|fault| Error::msg(fault.to_string()))?;
@@ -169,7 +169,7 @@ fn diagram(site: &Site, name: &str, caption: Option<Markup>) -> Result<Markup> {
     Ok(html! {
         figure .diagram id={ "diagram-" (name) } {
             div .scroll tabindex="0" role="group" aria-label="Diagram" { (PreEscaped(text[start..].trim())) }
-            (numbered(&caption.unwrap_or_default()))
+            (numbered(&caption.unwrap_or_default(), uses))
         }
     })
 }

@@ -1,12 +1,13 @@
 //! The page's texts and the sources that it quotes: embedded when the program was built, or read from a checkout.
 
-use super::fault::{Fault, line_of};
 use crate::system::files;
 use serde::de::DeserializeOwned;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::fmt;
 use std::path::PathBuf;
 use std::time::SystemTime;
+use thiserror::Error;
 use toml::Spanned;
 
 /// Reads project files by their paths in the checkout.
@@ -41,7 +42,7 @@ const FILES: &[(&str, &str)] = embedded![
         "05-sphere.md" "06-normals.md" "07-camera-class.md" "08-antialiasing.md" "09-diffuse.md"
         "10-metal.md" "11-glass.md" "12-camera.md" "13-defocus.md" "14-final.md" "20-many-rays.md"
         "21-mappings.md" "22-simd.md" "23-speed.md" "24-control.md" "25-error.md" "26-precision.md"
-        "27-references.md" "28-glossary.md" "book.toml" "glossary.toml" "measured.toml"
+        "27-references.md" "28-glossary.md" "glossary.toml" "measured.toml"
         "references.toml";
     "docs/companion/measured/": "error.json" "mappings.json" "refill.json" "speed.json";
     "docs/companion/diagrams/": "cosine.svg" "error.svg" "fuzz.svg" "hierarchy.svg" "lanes.svg" "lens.svg" "life-cycle.svg"
@@ -126,6 +127,29 @@ impl Library {
     pub fn chapters() -> impl Iterator<Item = &'static str> {
         FILES.iter().map(|(path, _)| *path).filter(|path| path.starts_with(FOLDER) && path.ends_with(".md"))
     }
+}
+
+/// An error in the texts, with file and line.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{file}{}: {message}", if *.line == 0 { String::new() } else { format!(":{}", .line) })]
+pub struct Fault {
+    /// Path in the checkout.
+    pub file: String,
+    /// Counted from 1; 0 if the fault concerns the whole file.
+    pub line: usize,
+    /// What is wrong and how to fix it.
+    pub message: String,
+}
+
+impl Fault {
+    pub fn new(file: &str, line: usize, message: impl fmt::Display) -> Self {
+        Fault { file: file.to_owned(), line, message: message.to_string() }
+    }
+}
+
+/// The line of a byte position, counted from 1.
+pub fn line_of(text: &str, position: usize) -> usize {
+    1 + text.bytes().take(position).filter(|byte| *byte == b'\n').count()
 }
 
 #[cfg(test)]

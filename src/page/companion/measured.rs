@@ -1,8 +1,8 @@
 //! Tables and charts of stored measurements, each with its command and machine.
 
 use super::directive::{code_words, numbered};
-use super::fault::Fault;
-use super::library::{FOLDER, Library};
+use super::library::{FOLDER, Fault, Library};
+use super::site::Uses;
 use crate::measure;
 use crate::measure::report::{self, CurveSummary};
 use crate::numbers::chart::{self, UNTITLED_TOP};
@@ -101,9 +101,9 @@ impl Measured {
     }
 
     /// The chart with this name.
-    pub fn chart(&self, name: &str) -> Result<Markup> {
+    pub fn chart(&self, name: &str, uses: &mut Uses) -> Result<Markup> {
         ensure!(name == REPORT, "there is no chart {name:?}; use {REPORT}");
-        error_chart(self.find(name)?)
+        error_chart(self.find(name)?, uses)
     }
 
     fn find(&self, name: &str) -> Result<&Kept> {
@@ -194,7 +194,7 @@ fn error_table(kept: &Kept) -> Result<Markup> {
 }
 
 /// The chart of the same data, in the page's colours.
-fn error_chart(kept: &Kept) -> Result<Markup> {
+fn error_chart(kept: &Kept, uses: &mut Uses) -> Result<Markup> {
     let drawn = report::chart(&report_of(kept)?, TARGETS[0]);
     let figure = chart::Figure {
         // The caption already says both.
@@ -213,7 +213,7 @@ fn error_chart(kept: &Kept) -> Result<Markup> {
                 "Error against time. Lower and further left is better; the dashed slope is half the error in four times the time. "
                 em { "cpu" } ": packets on all threads; " em { "scalar" } ": one lane on all threads; "
                 em { "c89" } ": the C program on one thread. " (origin(kept, None))
-            }))
+            }, uses))
         }
     })
 }

@@ -2,18 +2,15 @@
 //! the gallery's stills and measurements.
 
 mod back_matter;
-mod book;
 mod chapter;
 mod directive;
 mod excerpt;
-mod fault;
 mod highlight;
 mod library;
 mod measured;
 mod page;
 mod pictures;
 mod prose;
-mod reference;
 mod section;
 mod site;
 mod timeline;
@@ -23,9 +20,9 @@ pub use highlight::Highlighter;
 pub use section::excerpts_between;
 
 use crate::cli::CompanionOptions;
-use crate::page::gallery::{self, Order, Quality};
+use crate::page::gallery::{Order, Outcome, Work};
 use crate::system::failure::Failure;
-use crate::system::files::{check_page, make_directory, write_text};
+use crate::system::files::{make_directory, write_text};
 use crate::system::interrupt::Interrupt;
 use anyhow::Result;
 use library::Library;
@@ -69,30 +66,31 @@ fn library(options: &CompanionOptions) -> Library {
 ///
 /// # Errors
 /// Those of [`run`].
-pub fn write(options: &CompanionOptions, interrupt: &Interrupt) -> Result<gallery::Outcome, Failure> {
+pub fn write(options: &CompanionOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let page = Site::read(&library(options)).and_then(|site| page::render(&site)).map_err(Failure::Input)?;
     let out = &options.out;
-    make_directory(&out.join(pictures::FOLDER)).map_err(Failure::Input)?;
     let index = out.join("index.html");
-    check_page(&index).map_err(Failure::input)?;
-    // Write the page first, so that it can be read while its figures are rendered.
-    let build = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_millis();
-    let reload = format!("<script>\n{}</script>\n", RELOAD.replace("BUILD", &build.to_string()));
-    write_text(&index, &(page.html + if options.watch { &reload } else { "" })).map_err(Failure::run)?;
     let order = Order {
         directory: &out.join("figures"),
+        page: &index,
         stages: &page.stages,
-        quality: Quality::new(options.quick),
+        is_quick: options.quick,
         backend: &options.backend,
         progress: options.progress,
         prints_stills: false,
     };
+    let work = Work::begin(&order, interrupt)?;
+    make_directory(&out.join(pictures::FOLDER)).map_err(Failure::Input)?;
+    // Write the page first, so that it can be read while its figures are rendered.
+    let build = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_millis();
+    let reload = format!("<script>\n{}</script>\n", RELOAD.replace("BUILD", &build.to_string()));
+    write_text(&index, &(page.html + if options.watch { &reload } else { "" })).map_err(Failure::run)?;
     let mut missing = page.pictures.len();
     for picture in page.pictures.iter().take_while(|_| !interrupt.is_set()) {
         picture.render(out).map_err(Failure::Run)?;
         missing -= 1;
     }
-    let mut outcome = gallery::render(&order, interrupt)?;
+    let mut outcome = work.render()?;
     outcome.missing += missing;
     if options.watch {
         write_text(&out.join("build.js"), &format!("built({build});\n")).map_err(Failure::run)?;

@@ -1,13 +1,13 @@
 //! The page around the chapters.
 
 use super::directive;
-use super::fault::Fault;
+use super::library::Fault;
 use super::pictures::Picture;
 use super::prose;
 use super::site::{Site, Uses};
 use crate::page::gallery::Panel;
 use crate::page::web;
-use crate::stages::{BOOK_URL, Stage};
+use crate::stages::{BOOK_URL, Stage, book_url, heading};
 use crate::system::files::GENERATOR;
 use anyhow::Result;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -32,7 +32,6 @@ pub fn render(site: &Site) -> Result<Page> {
     let chapters = html! {
         @for place in 0..site.chapters.len() { (section(site, place, &mut uses)?) }
     };
-    let chapters = numbered(&chapters.into_string());
     site.check(&uses)?;
     let mut stages: Vec<&Stage> =
         uses.figures.iter().flat_map(|figure| &figure.panels).map(Panel::stage).collect();
@@ -41,17 +40,8 @@ pub fn render(site: &Site) -> Result<Page> {
     stages.dedup();
     let live = web::live_data(stages.iter().copied())?;
     uses.pictures.push(Picture::small(cover_stage()));
-    let page = document(site, &PreEscaped(chapters), &PreEscaped(live))?;
+    let page = document(site, &chapters, &PreEscaped(live))?;
     Ok(Page { html: page.into_string(), stages, pictures: uses.pictures })
-}
-
-/// Numbers the figures.
-fn numbered(html: &str) -> String {
-    let mut parts = html.split(directive::NUMBER_MARK);
-    let first = parts.next().unwrap_or_default().to_owned();
-    (1..).zip(parts).fold(first, |html, (number, part)| {
-        html + &format!("<span class=\"figure-number\">Figure {number}.</span> {part}")
-    })
 }
 
 /// The last stage, whose picture opens the page.
@@ -168,7 +158,7 @@ fn section(site: &Site, place: usize, uses: &mut Uses) -> Result<Markup, Fault> 
     let (id, title) = (&chapter.id, &chapter.facts.title);
     let text = prose::chapter(site, chapter, uses)?;
     let of_book = |number| {
-        let found = site.book.url(number).zip(site.book.heading(number)).map(|found| (number, found));
+        let found = heading(number).map(|heading| (number, book_url(number), heading));
         found.ok_or_else(|| Fault::new(&chapter.file, 1, format!("the book has no chapter {number:?}")))
     };
     let book = chapter.facts.book.as_deref().map(of_book).transpose()?;
@@ -179,7 +169,7 @@ fn section(site: &Site, place: usize, uses: &mut Uses) -> Result<Markup, Fault> 
             header .head {
                 p .kicker {
                     @if let Some(number) = chapter.shown_number() { "Chapter " (number) }
-                    @if let Some((number, (url, heading))) = book {
+                    @if let Some((number, url, heading)) = book {
                         @if chapter.shown_number().is_some() { " · " }
                         a .book href=(url) {
                             "The book, chapter " (number) @if heading != title { ": " (heading) }

@@ -32,63 +32,44 @@ const NOISY_WIDTH: u32 = 480;
 #[derive(Clone, Debug)]
 pub struct Picture {
     stage: &'static Stage,
-    subject: Subject,
+    name: &'static str,
+    recipe: Recipe,
+    tracer: Tracer,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Subject {
-    Right,
-    Mistake(&'static Mistake),
-    /// With at most this many rays per path.
-    Limit(u32),
-    Noisy(u64),
-    Denoised(u64),
-}
-
-/// Identifies the picture that this program renders of a recipe.
-fn fingerprint(recipe: &Recipe) -> String {
-    let mut checksum = Checksum::default();
-    checksum.text(to_toml(recipe).as_bytes());
-    checksum.word(SAMPLE_VERSION.into());
-    checksum.finish()
+enum Tracer {
+    /// That of `weekender check`, with or without a mistake.
+    Plain(Option<&'static Mistake>),
+    Fast,
+    Denoised,
 }
 
 impl Picture {
-    fn recipe(&self) -> Recipe {
-        let (width, samples) = match self.subject {
-            Subject::Right | Subject::Mistake(_) | Subject::Limit(_) => SMALL,
-            Subject::Noisy(samples) | Subject::Denoised(samples) => (NOISY_WIDTH, samples),
-        };
-        let mut recipe = self.stage.recipe();
+    fn new(stage: &'static Stage, name: &'static str, (width, samples): (u32, u64), tracer: Tracer) -> Self {
+        let mut recipe = stage.recipe();
         let settings = &mut recipe.settings;
         (settings.width, settings.height) = (width, width * settings.height / settings.width);
-        if let Subject::Limit(limit) = self.subject {
-            settings.max_depth = limit;
-        }
         recipe.samples_per_pixel = samples;
-        recipe
+        Picture { stage, name, recipe, tracer }
     }
 
     /// The name holds the recipe's fingerprint, so a file that exists is up to date.
     fn file(&self) -> String {
-        let name = match self.subject {
-            Subject::Right => "right",
-            Subject::Mistake(mistake) => mistake.id,
-            Subject::Limit(_) => "limit",
-            Subject::Noisy(_) => "noisy",
-            Subject::Denoised(_) => "denoised",
-        };
-        format!("{FOLDER}/{}-{name}-{:.8}.png", self.stage.id, fingerprint(&self.recipe()))
+        let mut checksum = Checksum::default();
+        checksum.text(to_toml(&self.recipe).as_bytes());
+        checksum.word(SAMPLE_VERSION.into());
+        format!("{FOLDER}/{}-{}-{:.8}.png", self.stage.id, self.name, checksum.finish())
     }
 
     /// A smooth and small picture of a stage.
     pub fn small(stage: &'static Stage) -> Self {
-        Picture { stage, subject: Subject::Denoised(64) }
+        Picture::new(stage, "denoised", (NOISY_WIDTH, 64), Tracer::Denoised)
     }
 
     /// Its file and width, as candidates for a place have it.
     pub fn candidate(&self) -> String {
-        format!("{} {}w", self.file(), self.recipe().settings.width)
+        format!("{} {}w", self.file(), self.recipe.settings.width)
     }
 
     /// Renders the picture unless it exists.
@@ -97,13 +78,11 @@ impl Picture {
         if path.exists() {
             return Ok(());
         }
-        let recipe = self.recipe();
-        let [width, height] = [recipe.settings.width, recipe.settings.height];
-        let bytes = match self.subject {
-            Subject::Right => mistaken(recipe, None)?,
-            Subject::Mistake(mistake) => mistaken(recipe, Some(mistake))?,
-            Subject::Limit(_) | Subject::Noisy(_) => sampled(&recipe, false)?,
-            Subject::Denoised(_) => sampled(&recipe, true)?,
+        let [width, height] = [self.recipe.settings.width, self.recipe.settings.height];
+        let bytes = match self.tracer {
+            Tracer::Plain(mistake) => mistaken(self.recipe.clone(), mistake)?,
+            Tracer::Fast => sampled(&self.recipe, false)?,
+            Tracer::Denoised => sampled(&self.recipe, true)?,
         };
         let mut png = Vec::new();
         let encoder = PngEncoder::new_with_quality(&mut png, CompressionType::Best, FilterType::Adaptive);
@@ -112,7 +91,7 @@ impl Picture {
     }
 
     fn img(&self, alt: &str) -> Markup {
-        let settings = self.recipe().settings;
+        let settings = self.recipe.settings;
         html! {
             img src=(self.file()) width=(settings.width) height=(settings.height) loading="lazy"
                 alt={ (self.stage.title) ": " (alt) };
@@ -156,12 +135,13 @@ pub fn mistakes(stage: &str, ids: &str, uses: &mut Uses) -> Result<Markup> {
         let is_it = |mistake: &&Mistake| mistake.id == id && (mistake.applies)(&recipe);
         MISTAKES.iter().find(is_it).with_context(|| format!("{} can have no mistake {id:?}", stage.id))
     };
-    let wrong: Result<Vec<&Mistake>> = ids.split_whitespace().map(find).collect();
+    let plain = |name, mistake| Picture::new(stage, name, SMALL, Tracer::Plain(mistake));
+    let wrong: Result<Vec<&'static Mistake>> = ids.split_whitespace().map(find).collect();
     Ok(html! {
         ul .mistakes {
-            (entry(Picture { stage, subject: Subject::Right }, "as it should be", "", uses))
+            (entry(plain("right", None), "as it should be", "", uses))
             @for mistake in wrong? {
-                (entry(Picture { stage, subject: Subject::Mistake(mistake) }, mistake.title, mistake.remedy, uses))
+                (entry(plain(mistake.id, Some(mistake)), mistake.title, mistake.remedy, uses))
             }
         }
     })
@@ -173,7 +153,8 @@ pub fn limits(stage: &str, limits: &str, uses: &mut Uses) -> Result<Markup> {
     let limits: Result<Vec<u32>, _> = limits.split_whitespace().map(str::parse).collect();
     let limits = limits.context("the limits are whole numbers")?;
     let mut shown = |limit| {
-        let picture = Picture { stage, subject: Subject::Limit(limit) };
+        let mut picture = Picture::new(stage, "limit", SMALL, Tracer::Fast);
+        picture.recipe.settings.max_depth = limit;
         entry(picture, &format!("at most {} per path", counted(limit.into(), "ray")), "", uses)
     };
     Ok(html! { ul .mistakes { @for limit in limits { (shown(limit)) } } })
@@ -195,13 +176,13 @@ fn entry(picture: Picture, title: &str, remedy: &str, uses: &mut Uses) -> Markup
 /// A stage with few samples, before and after denoising, for a wipe.
 pub fn denoised(stage: &str, samples: &str, uses: &mut Uses) -> Result<Markup> {
     let (stage, samples) = (Stage::find(stage)?, samples.parse().context("give the samples per pixel")?);
-    let mut panel = |subject, label: &str| {
-        let picture = Picture { stage, subject };
+    let mut panel = |name, tracer, label: &str| {
+        let picture = Picture::new(stage, name, (NOISY_WIDTH, samples), tracer);
         uses.pictures.push(picture.clone());
         html! { div .panel { (picture.img(label)) p .label { (label) } } }
     };
     let label = format!("{samples} samples per pixel");
-    let panels =
-        [panel(Subject::Noisy(samples), &label), panel(Subject::Denoised(samples), &(label + ", denoised"))];
+    let noisy = panel("noisy", Tracer::Fast, &label);
+    let panels = [noisy, panel("denoised", Tracer::Denoised, &(label + ", denoised"))];
     Ok(html! { div .panels .of-2 { @for panel in panels { (panel) } } })
 }

@@ -1,11 +1,12 @@
 //! Markdown to HTML, with the page's own links, directives, formulas and colours.
 
-use super::book::split_heading;
 use super::chapter::Chapter;
 use super::directive::{self, typographic};
-use super::fault::{Fault, line_of};
+use super::library::{Fault, line_of};
+use super::section::split_heading;
 use super::site::{Site, Uses};
 use crate::page::gallery::Figure;
+use crate::stages;
 use anyhow::{Context, Result, bail, ensure};
 use math_core::MathDisplay;
 use maud::{Markup, PreEscaped, html};
@@ -230,7 +231,7 @@ impl Converter<'_> {
         ensure!(is_new, "another heading has the anchor #{anchor}; choose other words");
         let source = self.place.text[range.clone()].trim_start_matches('#').trim();
         let title = match split_heading(source) {
-            Some((number, words)) => self.book_heading(number, words)?,
+            Some((number, words)) => Self::book_heading(number, words)?,
             None => {
                 let mut title = String::new();
                 writer::push_html(&mut title, inner.into_iter());
@@ -244,14 +245,13 @@ impl Converter<'_> {
     }
 
     /// The heading of a section of the book, with a link to it.
-    fn book_heading(&self, number: &str, words: &str) -> Result<Markup> {
-        let book = &self.site.book;
-        let section = book.heading(number).zip(book.url(number));
-        let (heading, url) = section.with_context(|| format!("the book has no section {number}"))?;
+    fn book_heading(number: &str, words: &str) -> Result<Markup> {
+        let heading = stages::heading(number);
+        let heading = heading.with_context(|| format!("the book has no section {number}"))?;
         ensure!(heading == words, "section {number} of the book is called {heading:?}");
         Ok(html! {
             span .number { (number) } " " (typographic(heading)) " "
-            a .book href=(url) title={ "Section " (number) " in the book" } {
+            a .book href=(stages::book_url(number)) title={ "Section " (number) " in the book" } {
                 "book" span .hidden { ", section " (number) }
             }
         })
@@ -316,7 +316,7 @@ impl Converter<'_> {
                 let (name, fragment) = rest.split_once('#').unwrap_or((rest, ""));
                 let chapter = site.chapters.iter().find(|chapter| chapter.id == name);
                 let chapter = chapter.with_context(|| format!("the page has no chapter {name:?}"))?;
-                let heading = site.book.heading(fragment).map(|heading| format!("{fragment} {heading}"));
+                let heading = stages::heading(fragment).map(|heading| format!("{fragment} {heading}"));
                 let anchor = match &heading {
                     Some(heading) => format!("{name}-{}", slug(heading)),
                     None if fragment.is_empty() => name.to_owned(),

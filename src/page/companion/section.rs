@@ -1,6 +1,5 @@
 //! The excerpts for a section of the book, for programs that show them beside a stage.
 
-use super::book::{is_section, split_heading};
 use super::chapter::Chapter;
 use super::excerpt::{self, Excerpt};
 use super::library::Library;
@@ -44,6 +43,17 @@ fn is_later(section: &str, other: &str) -> bool {
     is_section(section) && part(section) > part(other)
 }
 
+/// Splits a heading that starts with a section number, such as "6.1 Shading with Surface Normals".
+pub fn split_heading(heading: &str) -> Option<(&str, &str)> {
+    let (number, title) = heading.split_once(' ')?;
+    is_section(number).then_some((number, title.trim()))
+}
+
+/// Whether this is a section number, such as "9.3".
+fn is_section(number: &str) -> bool {
+    number.contains('.') && number.split('.').all(|part| part.parse::<u8>().is_ok())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -61,5 +71,13 @@ mod tests {
         assert!(first_lines(Some("4.2"), "5.2").iter().any(|line| line.contains("fn book_root")));
         assert_eq!(first_lines(Some("10.5"), "10.6"), Vec::<String>::new());
         assert_eq!(first_lines(None, "99.1"), Vec::<String>::new());
+    }
+
+    #[test]
+    fn section_number_splits_from_heading() {
+        assert_eq!(split_heading("6.1 Shading with Normals"), Some(("6.1", "Shading with Normals")));
+        for heading in ["1. Paths", "6 Normals", "What a lane is", "6.x Normals", "6.1"] {
+            assert_eq!(split_heading(heading), None, "{heading}");
+        }
     }
 }

@@ -1,13 +1,11 @@
 //! Everything that the page's texts can refer to, and what they did refer to.
 
-use super::book::{self, Book};
+use super::back_matter::{GLOSSARY, REFERENCES, Reference, Term};
 use super::chapter::Chapter;
-use super::fault::Fault;
 use super::highlight::Highlighter;
-use super::library::{Entry, Library};
+use super::library::{Entry, Fault, Library};
 use super::measured::Measured;
 use super::pictures::Picture;
-use super::reference::{GLOSSARY, REFERENCES, Reference, Term};
 use crate::page::gallery::Figure;
 use anyhow::{Result, anyhow};
 use math_core::{LatexToMathML, MathCoreConfig};
@@ -17,7 +15,6 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct Site {
     /// Where diagrams are read from.
     pub library: Library,
-    pub book: Book,
     pub chapters: Vec<Chapter>,
     /// In alphabetical order.
     pub terms: Vec<Entry<Term>>,
@@ -39,6 +36,8 @@ pub struct Uses {
     pub pictures: Vec<Picture>,
     /// In the order of the page.
     pub figures: Vec<&'static Figure>,
+    /// How many figures have a number so far.
+    pub numbered_figures: usize,
     /// Existing anchors.
     pub anchors: BTreeSet<String>,
     /// Linked anchors, each with file and line.
@@ -53,7 +52,6 @@ impl Site {
         terms.sort_by_key(|entry| entry.value.term.to_lowercase());
         Ok(Site {
             library: library.clone(),
-            book: library.toml(book::FILE)?,
             chapters: Chapter::read_all(library)?,
             terms,
             references: library.entries(REFERENCES)?,

@@ -1,9 +1,8 @@
 //! Made-up texts as HTML, and errors in them.
 
+use super::back_matter::{Area, Reference, Term};
 use super::chapter::Chapter;
-use super::fault::Fault;
-use super::library::{Entry, Library};
-use super::reference::{Area, Reference, Term};
+use super::library::{Entry, Fault, Library};
 use super::site::{Site, Uses};
 use super::{page, prose};
 use crate::stages::Stage;

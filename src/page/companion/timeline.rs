@@ -1,6 +1,7 @@
 //! A figure of the steps of a packet's lanes, laid out from recorded paths.
 
 use super::directive::numbered;
+use super::site::Uses;
 use crate::backends::explain::{Activity, Timeline, timeline};
 use crate::render_cpu::{Isa, PathRecorder};
 use crate::stages::Stage;
@@ -30,7 +31,7 @@ const LEGEND: [(Activity, &str, &str); 5] = [
 ];
 
 /// The figure for a stage: the packet in the middle of its picture, without and with refill.
-pub fn figure(id: &str) -> Result<Markup> {
+pub fn figure(id: &str, uses: &mut Uses) -> Result<Markup> {
     let stage = Stage::find(id)?;
     let job = stage.recipe().job()?;
     // Every level records the same steps; the portable one exists on all machines.
@@ -58,7 +59,7 @@ pub fn figure(id: &str) -> Result<Markup> {
                 "The " (LANES) " lanes of a packet in the middle of “" (stage.title) "”, each with " (SAMPLES)
                 " samples of its pixel: a row is a lane, a column a step. Laid out from the tracer’s own paths; only after \
                  its last sample does a refilled lane wait here."
-            }))
+            }, uses))
         }
     })
 }
@@ -93,7 +94,7 @@ mod tests {
 
     #[test]
     fn figure_states_gain_of_refill() {
-        let html = figure("three-spheres").unwrap().into_string();
+        let html = figure("three-spheres", &mut Uses::default()).unwrap().into_string();
         let steps = |after: &str| -> f64 {
             let rest = &html[html.find(after).unwrap() + after.len()..];
             rest.trim_start_matches(": ").split(' ').next().unwrap().parse().unwrap()

@@ -2,17 +2,16 @@
 //! directory with a page.
 
 mod page;
-mod quality;
 mod rendering;
 mod still;
 
-pub use quality::{Quality, is_about_pixels};
-pub use rendering::{Order, Outcome, render};
+pub use rendering::{Order, Outcome, Work};
+pub use still::is_about_pixels;
 
 use crate::cli::GalleryOptions;
 use crate::stages::Stage;
 use crate::system::failure::Failure;
-use crate::system::files::{check_page, write_text};
+use crate::system::files::write_text;
 use crate::system::interrupt::Interrupt;
 use crate::system::suggest::{or_nearest, similar_names};
 use anyhow::{Result, bail};
@@ -20,7 +19,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::process::ExitCode;
 use std::sync::LazyLock;
-use still::Stills;
+use still::stills_in;
 
 /// One or more pictures with a caption.
 #[derive(Debug, Deserialize)]
@@ -82,20 +81,18 @@ impl Panel {
 pub fn run(options: &GalleryOptions) -> Result<ExitCode, Failure> {
     let stages = chosen(&options.only).map_err(Failure::Input)?;
     let index = options.out.join("index.html");
-    if options.out.is_dir() {
-        check_page(&index).map_err(Failure::input)?;
-    }
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let order = Order {
         directory: &options.out,
+        page: &index,
         stages: &stages,
-        quality: Quality::new(options.quick),
+        is_quick: options.quick,
         backend: &options.backend,
         progress: options.progress,
         prints_stills: true,
     };
-    let outcome = render(&order, &interrupt)?;
-    write_text(&index, &page::page(&Stills::read(&options.out))).map_err(Failure::run)?;
+    let outcome = Work::begin(&order, &interrupt)?.render()?;
+    write_text(&index, &page::page(&stills_in(&options.out))).map_err(Failure::run)?;
     outcome.report(&index, &interrupt)
 }
 
@@ -108,11 +105,8 @@ fn chosen(ids: &[String]) -> Result<Vec<&'static Stage>> {
         let before = chosen.len();
         chosen.extend(stages.map(|stage| stage.id));
         if chosen.len() == before {
-            let ids = Figure::all()
-                .iter()
-                .map(|figure| figure.id.as_str())
-                .chain(Stage::ALL.iter().map(|stage| stage.id));
-            let mut near = similar_names(id, ids);
+            let ids = Figure::all().iter().map(|figure| figure.id.as_str());
+            let mut near = similar_names(id, ids.chain(Stage::ALL.iter().map(|stage| stage.id)));
             near.dedup();
             bail!("--only names {id:?}, which is neither a figure nor a stage; {}", or_nearest(&near));
         }

@@ -1,7 +1,6 @@
 //! `index.html`: the figures with captions, by chapter. It needs no server, script or network.
 
-use super::quality::is_about_pixels;
-use super::still::{Stills, file_name};
+use super::still::{Stills, file_name, is_about_pixels};
 use super::{Figure, Panel};
 use crate::stages::{BOOK_URL, Stage};
 use crate::system::files::GENERATOR;
@@ -15,8 +14,8 @@ pub fn page(stills: &Stills) -> String {
     let chapters = Figure::all().chunk_by(|a, b| a.stage().chapter() == b.stage().chapter());
     let chapters: Vec<(&Stage, &[Figure])> =
         chapters.filter_map(|figures| Some((figures.first()?.stage(), figures))).collect();
-    let title = |stage: &Stage| html! { span.number { (stage.chapter()) } " " (stage.chapter_title) };
-    let backends: BTreeSet<&str> = stills.all().map(|still| still.backend.as_str()).collect();
+    let title = |stage: &Stage| html! { span.number { (stage.chapter()) } " " (stage.chapter_title()) };
+    let backends: BTreeSet<&str> = stills.values().map(|still| still.backend.as_str()).collect();
     let backends: Vec<&str> = backends.into_iter().collect();
     let page = html! {
         (DOCTYPE)
@@ -79,7 +78,7 @@ fn shown(figure: &Figure, stills: &Stills) -> Markup {
             figcaption {
                 h3 { a href={ "#figure-" (figure.id) } { (figure.title) } }
                 p { (figure.caption) }
-                p.section { a href=(stage.url()) { "Section " (stage.section) ", " (stage.section_title) } }
+                p.section { a href=(stage.url()) { "Section " (stage.section) ", " (stage.section_title()) } }
             }
         }
     }
@@ -90,11 +89,11 @@ fn shown_panel(panel: &Panel, is_labelled: bool, stills: &Stills) -> Markup {
     let stage = panel.stage();
     html! {
         div .panel .pixels[is_about_pixels(stage)] data-stage=(stage.id) {
-            @match stills.of(stage) {
+            @match stills.get(stage.id) {
                 Some(still) => {
                     @let file = file_name(stage);
                     a href=(file) {
-                        img src=(file) width=(still.width) height=(still.height) alt=(stage.alt) loading="lazy";
+                        img src=(file) width=(still.settings.width) height=(still.settings.height) alt=(stage.alt) loading="lazy";
                     }
                     p.facts {
                         @if is_labelled { strong { (panel.label) } " " }
@@ -113,7 +112,7 @@ mod tests {
 
     #[test]
     fn page_has_figures_and_placeholders() {
-        let page = page(&Stills::of_stages(&["metal", "metal-fuzzy", "book"]));
+        let page = page(&crate::page::gallery::still::stills_of(&["metal", "metal-fuzzy", "book"]));
         for figure in Figure::all() {
             assert_eq!(page.matches(&format!("id=\"figure-{}\"", figure.id)).count(), 1, "{}", figure.id);
             let chapter = format!("<section id=\"chapter-{}\">", figure.stage().chapter());

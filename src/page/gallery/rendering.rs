@@ -1,7 +1,6 @@
 //! Renders missing or outdated stills.
 
-use super::quality::Quality;
-use super::still::{NO_NOISE, Still, file_name, is_fresh};
+use super::still::{NO_NOISE, Still, file_name, is_fresh, recipe};
 use crate::backends::BackendChoice;
 use crate::batch::{Event, Studio};
 use crate::cli::ProgressChoice;
@@ -14,7 +13,7 @@ use crate::progressive::describe::{counted, describe};
 use crate::stages::Stage;
 use crate::system::console;
 use crate::system::failure::Failure;
-use crate::system::files::{check_writable, make_directory};
+use crate::system::files::{check_page, check_writable, make_directory};
 use crate::system::interrupt::Interrupt;
 use anyhow::{Result, bail};
 use std::path::{Path, PathBuf};
@@ -25,10 +24,12 @@ use std::time::Duration;
 pub struct Order<'a> {
     /// The directory of the stills, created if missing.
     pub directory: &'a Path,
+    /// The page that shows them.
+    pub page: &'a Path,
     /// The stages to render; stills of others stay untouched.
     pub stages: &'a [&'static Stage],
-    /// The effort per still. A full still satisfies a quick order.
-    pub quality: Quality,
+    /// Small and visibly noisy, for a first look. A full still satisfies a quick order.
+    pub is_quick: bool,
     pub backend: &'a BackendChoice,
     pub progress: ProgressChoice,
     /// Whether to print each finished still on a line.
@@ -69,105 +70,115 @@ const LINE_INTERVAL: Duration = Duration::from_secs(5);
 /// The progress bar, which counts paths.
 const TEMPLATE: &str = "[{bar:24}] {eta} left, {wide_msg}";
 
-/// Renders the ordered stills that are missing, damaged, or made from other settings or by another tracer, and writes
-/// each with its description as soon as it is finished. Ctrl-C drops the still in progress.
-///
-/// [`Failure::Input`] if nothing was rendered, otherwise [`Failure::BrokeOff`] or [`Failure::Run`]. Finished stills are
-/// kept.
-pub fn render(order: &Order<'_>, interrupt: &Interrupt) -> Result<Outcome, Failure> {
-    make_directory(order.directory).map_err(Failure::Input)?;
-    let tasks = tasks(order).map_err(Failure::Input)?;
-    for (stage, _) in &tasks {
-        check_writable(&order.path(stage)).map_err(Failure::input)?;
-    }
-    let kept = order.stages.len() - tasks.len();
-    let mut rendered = 0;
-    if !tasks.is_empty() {
-        let studio = Studio::open(order.backend, interrupt)?;
-        let display = Display::new(order.progress, paths(&tasks), TEMPLATE, "", LINE_INTERVAL);
-        let mut work = Work { order, interrupt, studio, display };
-        let outcome = work.render_all(&tasks, &mut rendered);
-        work.display.clear();
-        outcome.map_err(|error| match rendered {
-            0 => Failure::Run(error),
-            _ => {
-                let kept = counted(rendered as u64, "picture");
-                Failure::BrokeOff(error.context(format!("broke off; kept: {kept}")))
-            }
-        })?;
-    }
-    Ok(Outcome { rendered, kept, missing: tasks.len() - rendered })
+/// The stills of an order that are missing, damaged, or made from other settings or by another tracer.
+pub struct Work<'a> {
+    order: &'a Order<'a>,
+    interrupt: &'a Interrupt,
+    tasks: Vec<Task>,
+    /// `None` if there is nothing to render.
+    studio: Option<Studio<'a>>,
 }
 
-fn tasks(order: &Order<'_>) -> Result<Vec<Task>> {
-    let mut tasks = Vec::new();
-    for stage in order.stages {
-        let recipes = [order.quality, Quality::Full].map(|quality| quality.recipe(stage));
-        if !is_fresh(&order.path(stage), &recipes) {
-            let [recipe, _] = recipes;
-            recipe.job()?.check_memory(1)?;
-            tasks.push((*stage, recipe));
+impl<'a> Work<'a> {
+    /// Checks everything that may be refused, and only then makes the directory.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if the order cannot be carried out.
+    pub fn begin(order: &'a Order<'a>, interrupt: &'a Interrupt) -> Result<Self, Failure> {
+        if order.page.parent().is_some_and(Path::is_dir) {
+            check_page(order.page).map_err(Failure::input)?;
         }
+        let tasks = order.tasks().map_err(Failure::Input)?;
+        let is_needed = !tasks.is_empty();
+        let studio = is_needed.then(|| Studio::open(order.backend, interrupt)).transpose()?;
+        make_directory(order.directory).map_err(Failure::Input)?;
+        for (stage, _) in &tasks {
+            check_writable(&order.path(stage)).map_err(Failure::input)?;
+        }
+        Ok(Work { order, interrupt, tasks, studio })
     }
-    Ok(tasks)
+
+    /// Renders the stills, and writes each with its description as soon as it is finished. Ctrl-C drops the still in
+    /// progress.
+    ///
+    /// # Errors
+    /// [`Failure::Run`], or [`Failure::BrokeOff`] if some are finished; they are kept.
+    pub fn render(self) -> Result<Outcome, Failure> {
+        let Work { order, interrupt, tasks, studio } = self;
+        let mut rendered = 0;
+        if let Some(mut studio) = studio {
+            let mut display = Display::new(order.progress, paths(&tasks), TEMPLATE, "", LINE_INTERVAL);
+            let outcome = loop {
+                if rendered == tasks.len() || interrupt.is_set() {
+                    break Ok(());
+                }
+                match order.render(&tasks, rendered, &mut studio, &mut display, interrupt) {
+                    Ok(true) => rendered += 1,
+                    Ok(false) => break Ok(()),
+                    Err(error) => break Err(error),
+                }
+            };
+            display.clear();
+            outcome.map_err(|error| match rendered {
+                0 => Failure::Run(error),
+                _ => {
+                    let kept = counted(rendered as u64, "picture");
+                    Failure::BrokeOff(error.context(format!("broke off; kept: {kept}")))
+                }
+            })?;
+        }
+        let kept = order.stages.len() - tasks.len();
+        Ok(Outcome { rendered, kept, missing: tasks.len() - rendered })
+    }
 }
 
 impl Order<'_> {
     fn path(&self, stage: &Stage) -> PathBuf {
         self.directory.join(file_name(stage))
     }
-}
 
-struct Work<'a> {
-    order: &'a Order<'a>,
-    interrupt: &'a Interrupt,
-    studio: Studio<'a>,
-    display: Display,
-}
-
-impl Work<'_> {
-    /// Counts the finished stills in `rendered`. A signal ends it early.
-    fn render_all(&mut self, tasks: &[Task], rendered: &mut usize) -> Result<()> {
-        while *rendered < tasks.len() && !self.interrupt.is_set() && self.render(tasks, *rendered)? {
-            let (stage, _) = &tasks[*rendered];
-            *rendered += 1;
-            if let Some(still) = Still::read(&self.order.path(stage)).filter(|_| self.order.prints_stills) {
-                self.display.above(|| print(&still.line(stage)))?;
+    fn tasks(&self) -> Result<Vec<Task>> {
+        let mut tasks = Vec::new();
+        for stage in self.stages {
+            let recipes = [self.is_quick, false].map(|is_quick| recipe(stage, is_quick));
+            if !is_fresh(&self.path(stage), &recipes) {
+                let [recipe, _] = recipes;
+                recipe.job()?.check_memory(1)?;
+                tasks.push((*stage, recipe));
             }
         }
-        Ok(())
+        Ok(tasks)
     }
 
-    /// Renders and writes the still of task `number`; `false` after a signal.
-    fn render(&mut self, tasks: &[Task], number: usize) -> Result<bool> {
+    /// Renders, writes and prints the still of task `number`; `false` after a signal.
+    fn render(
+        &self,
+        tasks: &[Task],
+        number: usize,
+        studio: &mut Studio,
+        display: &mut Display,
+        interrupt: &Interrupt,
+    ) -> Result<bool> {
         let (stage, recipe) = &tasks[number];
         let planned = recipe.samples_per_pixel;
-        let display = &mut self.display;
-        let (status, film) =
-            self.studio.render(recipe.job()?, Studio::plan(planned), None, |event| match event {
-                Event::Warning(message) => display.say(&format!("warning: {message}")),
-                Event::Stopping => {}
-                Event::Status(_, status) => {
-                    let done = status.samples_per_pixel;
-                    display.update(paths(&tasks[..number]) + done * pixels(recipe), || {
-                        let error = status
-                            .error
-                            .map_or_else(String::new, |error| format!(", error {:.1e}", error.rmse));
-                        format!(
-                            "{} of {}, {}: {done} of {planned} spp{error}",
-                            number + 1,
-                            tasks.len(),
-                            stage.id
-                        )
-                    });
-                }
-            });
+        let (status, film) = studio.render(recipe.job()?, Studio::plan(planned), None, |event| match event {
+            Event::Warning(message) => display.warn(message),
+            Event::Stopping => {}
+            Event::Status(_, status) => {
+                let done = status.samples_per_pixel;
+                display.update(paths(&tasks[..number]) + done * pixels(recipe), || {
+                    let error = status.error.map(|error| format!(", error {:.1e}", error.rmse));
+                    let (number, count, error) = (number + 1, tasks.len(), error.unwrap_or_default());
+                    format!("{number} of {count}, {}: {done} of {planned} spp{error}", stage.id)
+                });
+            }
+        });
         if let Phase::Failed(reason) = &status.phase {
             bail!("{}: {reason}", stage.id);
         }
         let Some(film) = film.filter(|film| film.sample_count() >= planned) else { return Ok(false) };
-        let path = self.order.path(stage);
-        let _writing = self.interrupt.while_writing(path.display().to_string());
+        let path = self.path(stage);
+        let writing = interrupt.while_writing(path.display().to_string());
         let mut description = describe(recipe, Some(stage), &film, &status, Some(0.0));
         let error = film.error().filter(|error| error.rmse > 0.0).map(|error| {
             let share = (100.0 * error.rmse_deviation / error.rmse).max(0.1);
@@ -175,6 +186,10 @@ impl Work<'_> {
         });
         description.set(key::ERROR, error.unwrap_or_else(|| NO_NOISE.to_owned()));
         write_small_png(&path, &film, recipe.rules.transfer, &description)?;
+        drop(writing);
+        if let Some(still) = Still::read(&path).filter(|_| self.prints_stills) {
+            display.above(|| print(&still.line(stage)))?;
+        }
         Ok(true)
     }
 }

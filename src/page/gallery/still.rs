@@ -2,20 +2,61 @@
 
 use crate::film::{SOFTWARE, key};
 use crate::job::recipe::Recipe;
+use crate::job::render::RenderSettings;
 use crate::job::saved::{Saved, is_whole_frame};
 use crate::progressive::describe::{counted, seconds};
 use crate::stages::Stage;
+use std::collections::BTreeMap;
 use std::path::Path;
+
+/// Maximum width of a quick still, pixels.
+const QUICK_WIDTH: u32 = 480;
+
+/// Maximum samples per pixel of a quick still.
+const QUICK_SAMPLES: u64 = 64;
+
+/// Minimum width of a full still, pixels: almost twice the pixels that most figures are wide.
+const FULL_WIDTH: u32 = 800;
+
+/// Samples per pixel of a full still. The estimated error is then at most 0.003, about half an 8-bit step.
+const FULL_SAMPLES: u64 = 1024;
+
+/// Stages about single pixels, whose size and samples must not change.
+const PIXELS: [&str; 3] = ["ppm-tiny", "aliased", "antialiased"];
+
+/// Stills narrower than this are enlarged.
+const FEW_PIXELS: u32 = 100;
 
 /// The error of a still without noise.
 pub(super) const NO_NOISE: &str = "no noise";
 
+/// Whether a still of the stage must be enlarged with every pixel a square. (A reduced still must not be shown so: its
+/// edges would become jagged.)
+pub fn is_about_pixels(stage: &Stage) -> bool {
+    stage.setup.width < FEW_PIXELS
+}
+
+/// The stage's own recipe with the size and samples of a still.
+pub(super) fn recipe(stage: &Stage, is_quick: bool) -> Recipe {
+    let mut recipe = stage.recipe();
+    if PIXELS.contains(&stage.id) {
+        return recipe;
+    }
+    let (settings, samples) = (&mut recipe.settings, &mut recipe.samples_per_pixel);
+    let width = if is_quick { settings.width.min(QUICK_WIDTH) } else { settings.width.max(FULL_WIDTH) };
+    settings.height = (settings.height * width).div_ceil(settings.width);
+    settings.width = width;
+    // A stage with one sample sends it through the pixel's centre; more would be the same.
+    if *samples > 1 {
+        *samples = if is_quick { QUICK_SAMPLES.min(*samples) } else { FULL_SAMPLES };
+    }
+    recipe
+}
+
 /// What a still says about itself.
 #[derive(Clone, Debug)]
 pub struct Still {
-    pub width: u32,
-    pub height: u32,
-    max_depth: u32,
+    pub settings: RenderSettings,
     samples_per_pixel: u64,
     trace_seconds: f64,
     /// The estimated error, or [`NO_NOISE`].
@@ -37,12 +78,9 @@ impl Still {
     /// Reads a still; `None` if there is none that says how it was made.
     pub fn read(path: &Path) -> Option<Still> {
         let saved = Saved::describe(path).ok()?;
-        let settings = saved.recipe().ok()?.settings;
         let text = |key| saved.description.get(key).map(str::to_owned);
         Some(Still {
-            width: settings.width,
-            height: settings.height,
-            max_depth: settings.max_depth,
+            settings: saved.recipe().ok()?.settings,
             samples_per_pixel: saved.samples()?,
             trace_seconds: saved.seconds()?,
             error: text(key::ERROR)?,
@@ -52,7 +90,7 @@ impl Still {
 
     /// The still of `stage` on one line.
     pub(super) fn line(&self, stage: &Stage) -> String {
-        let size = format!("{}x{}", self.width, self.height);
+        let size = format!("{}x{}", self.settings.width, self.settings.height);
         let (id, samples, time) = (stage.id, self.samples_per_pixel, self.time_words());
         format!("{id:<18} {size:>9}, {samples:>4} spp, {time:>15}, {}\n", self.error_words())
     }
@@ -63,11 +101,11 @@ impl Still {
             1 => "1 ray through the centre of each pixel".to_owned(),
             samples => format!("{} per pixel", counted(samples, "sample")),
         };
-        let depth = match self.max_depth {
+        let depth = match self.settings.max_depth {
             1 => String::new(),
             depth => format!(", at most {depth} rays per path"),
         };
-        format!("{} × {} pixels, {samples}{depth}", self.width, self.height)
+        format!("{} × {} pixels, {samples}{depth}", self.settings.width, self.settings.height)
     }
 
     /// The tracing time.
@@ -80,49 +118,27 @@ impl Still {
     }
 }
 
-/// The stills of a directory, in the book's order.
-#[derive(Clone, Debug, Default)]
-pub struct Stills(Vec<(&'static Stage, Still)>);
+/// The stills of a directory by their stages' ids.
+pub type Stills = BTreeMap<&'static str, Still>;
 
-impl Stills {
-    pub fn read(directory: &Path) -> Stills {
-        let still = |stage: &'static Stage| {
-            let path = directory.join(file_name(stage));
-            let is_of_stage = Saved::describe(&path).is_ok_and(|saved| saved.stage() == Some(stage));
-            Some((stage, Still::read(&path).filter(|_| is_of_stage)?))
-        };
-        Stills(Stage::ALL.iter().filter_map(still).collect())
-    }
-
-    pub fn all(&self) -> impl Iterator<Item = &Still> {
-        self.0.iter().map(|(_, still)| still)
-    }
-
-    pub fn of(&self, stage: &Stage) -> Option<&Still> {
-        self.0.iter().find(|(of, _)| of.id == stage.id).map(|(_, still)| still)
-    }
+pub fn stills_in(directory: &Path) -> Stills {
+    let still = |stage: &'static Stage| {
+        let path = directory.join(file_name(stage));
+        let is_of_stage = Saved::describe(&path).is_ok_and(|saved| saved.stage() == Some(stage));
+        Some((stage.id, Still::read(&path).filter(|_| is_of_stage)?))
+    };
+    Stage::ALL.iter().filter_map(still).collect()
 }
 
+/// Stills of these stages at full quality, not rendered.
 #[cfg(test)]
-impl Stills {
-    /// Stills of these stages at full quality, not rendered.
-    pub fn of_stages(ids: &[&str]) -> Self {
-        let still = |id: &&str| {
-            let stage = Stage::find(id).unwrap();
-            let Recipe { settings, samples_per_pixel, .. } = super::Quality::Full.recipe(stage);
-            let still = Still {
-                width: settings.width,
-                height: settings.height,
-                max_depth: settings.max_depth,
-                samples_per_pixel,
-                trace_seconds: 0.0,
-                error: NO_NOISE.to_owned(),
-                backend: "cpu".to_owned(),
-            };
-            (stage, still)
-        };
-        Stills(ids.iter().map(still).collect())
-    }
+pub fn stills_of(ids: &[&'static str]) -> Stills {
+    let still = |id: &&'static str| {
+        let Recipe { settings, samples_per_pixel, .. } = recipe(Stage::find(id).unwrap(), false);
+        let (error, backend) = (NO_NOISE.to_owned(), "cpu".to_owned());
+        (*id, Still { settings, samples_per_pixel, trace_seconds: 0.0, error, backend })
+    };
+    ids.iter().map(still).collect()
 }
 
 #[cfg(test)]
@@ -131,8 +147,8 @@ mod tests {
 
     #[test]
     fn a_still_describes_itself() {
-        let stills = Stills::of_stages(&["metal", "sky"]);
-        let [metal, sky] = ["metal", "sky"].map(|id| stills.of(Stage::find(id).unwrap()).unwrap());
+        let stills = stills_of(&["metal", "sky"]);
+        let [metal, sky] = ["metal", "sky"].map(|id| &stills[id]);
         let error = "1.2e-3 ± 0.8 %".to_owned();
         let metal = Still { trace_seconds: 8.26, error, ..metal.clone() };
         let line = "metal                800x450, 1024 spp,           8.3 s, error 1.2e-3 ± 0.8 %\n";
@@ -141,5 +157,31 @@ mod tests {
         assert_eq!(metal.settings_words(), settings);
         assert_eq!(sky.settings_words(), "800 × 450 pixels, 1 ray through the centre of each pixel");
         assert_eq!((sky.time_words().as_str(), sky.error_words().as_str()), ("less than 0.1 s", "no noise"));
+    }
+
+    #[test]
+    fn stills_keep_aspect_ratio() {
+        for stage in Stage::ALL {
+            let own = stage.recipe();
+            for is_quick in [true, false] {
+                let recipe = super::recipe(stage, is_quick);
+                recipe.job().expect(stage.id);
+                let [shape, own_shape] = [&recipe.settings, &own.settings]
+                    .map(|settings| f64::from(settings.width) / f64::from(settings.height));
+                assert!((shape / own_shape - 1.0).abs() < 0.01, "{}: {shape}", stage.id);
+                assert_eq!(recipe.samples_per_pixel == 1, own.samples_per_pixel == 1, "{}", stage.id);
+                if PIXELS.contains(&stage.id) {
+                    assert_eq!(recipe, own);
+                }
+            }
+        }
+        let sizes = |id: &str| {
+            [true, false].map(|is_quick| {
+                let recipe = super::recipe(Stage::find(id).expect("a stage"), is_quick);
+                (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel)
+            })
+        };
+        assert_eq!(sizes("book"), [(480, 270, 64), (1200, 675, 1024)]);
+        assert_eq!(sizes("sky"), [(480, 270, 1), (800, 450, 1)]);
     }
 }

@@ -1,30 +1,133 @@
-//! What a browser needs to run a stage: the shaders, their buffers, the numbers that a reader can change, and the
-//! script that runs them.
+//! What a browser needs to run a stage: the shaders, their buffers, and the numbers that a reader can change.
 //!
-//! A page opts in with three elements: [`HOST_STYLE`] in `<style>`, [`HOST_SCRIPT`] in `<script type="module">`, and
-//! [`live_data`] in `<script type="application/json" id="live-data">`. The script adds a switch to each
-//! `.panel[data-stage]`. No server is needed: a page opened from disk may use WebGPU, too.
+//! A page has `assets/web/live.css` in `<style>`, `scene.js`, `film.js` and `live.js` from there in `<script
+//! type="module">`, and [`live_data`] in `<script type="application/json" id="live-data">`. The script adds a switch to
+//! each `.panel[data-stage]`. No server is needed: a page opened from disk may use WebGPU, too.
 
-mod data;
 mod sliders;
 
+use crate::film::PixelSum;
+use crate::job::render::{RenderJob, RenderSettings};
+use crate::kernel::{GpuAside, Tag, WORKGROUP_SIZE, records};
+use crate::render_gpu::shader_source::{EntryPoint, shared};
+use crate::render_gpu::{Exported, TURN_LIMIT};
 use crate::stages::Stage;
-use anyhow::Result;
+use anyhow::{Context, Result};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::{Map, Value, json};
+use sliders::sliders;
 
-/// Plain JavaScript without dependencies.
-pub const HOST_SCRIPT: &str = concat!(
-    include_str!("../../../assets/web/scene.js"),
-    include_str!("../../../assets/web/film.js"),
-    include_str!("../../../assets/web/live.js"),
-);
-
-/// The style of the script's additions. The page can set the variables `--fg`, `--bg`, `--accent`, `--muted` and
-/// `--line`.
-pub const HOST_STYLE: &str = include_str!("../../../assets/web/live.css");
-
-/// The stages' data as JSON that is safe inside a `<script>` element. Fails if a stage cannot be rendered.
+/// Everything that the script reads, as JSON that is safe inside a `<script>` element.
+///
+/// # Errors
+/// If a stage cannot be rendered.
 pub fn live_data<'a>(stages: impl IntoIterator<Item = &'a Stage>) -> Result<String> {
-    let json = data::live_data(stages)?.to_string();
+    let stages = stages.into_iter().map(|stage| {
+        let data = stage_data(stage).with_context(|| format!("the stage {} cannot be prepared", stage.id))?;
+        Ok((stage.id.to_owned(), data))
+    });
+    let data = json!({
+        // A module is `shared` followed by the text of its entry point.
+        "programs": {
+            "shared": shared(),
+            "path_trace": EntryPoint::PathTrace.text(),
+            "resolve": EntryPoint::Resolve.text(),
+        },
+        "constants": {
+            "workgroup_size": WORKGROUP_SIZE,
+            "aside_size": size_of::<GpuAside>(),
+            "pixel_size": size_of::<PixelSum>(),
+            "turn_limit": TURN_LIMIT,
+        },
+        "records": records::layouts().into_iter().map(record).collect::<Map<_, _>>(),
+        "stages": stages.collect::<Result<Map<_, _>>>()?,
+    });
     // Only strings contain these characters, and HTML would end the element there or start a comment.
-    Ok(json.replace("</", "<\\/").replace("<!--", "\\u003c!--"))
+    Ok(data.to_string().replace("</", "<\\/").replace("<!--", "\\u003c!--"))
+}
+
+/// A record's field offsets in bytes, and its size as an array element as `stride`.
+fn record((name, size, fields): records::Layout) -> (String, Value) {
+    let fields = fields.into_iter().map(|field| (field.name.to_owned(), field.offset.into()));
+    (name, Value::Object(fields.chain([("stride".to_owned(), size.into())]).collect()))
+}
+
+fn stage_data(stage: &Stage) -> Result<Value> {
+    let recipe = stage.recipe();
+    // The page shows no error estimate, so one half is enough.
+    let settings = RenderSettings { estimate_error: false, ..recipe.settings };
+    let (camera, rules) = (recipe.camera, recipe.rules);
+    let job = RenderJob::new(recipe.scene, camera, settings, rules)?;
+    let exported = Exported::new(&job);
+    let overrides = exported.features.overrides().into_iter().map(|(name, value)| (name, value.into()));
+    Ok(json!({
+        "width": settings.width,
+        "height": settings.height,
+        "samples": recipe.samples_per_pixel,
+        "depth": settings.max_depth,
+        "transfer": rules.transfer.tag(),
+        // Whether the picture depends on the camera.
+        "has_rays": rules.has_rays(),
+        "camera": {
+            "from": camera.look_from.to_array(),
+            "at": camera.look_at.to_array(),
+            "up": camera.vup.to_array(),
+            // Degrees.
+            "vfov": camera.vfov_degrees,
+            "defocus": camera.defocus_angle_degrees,
+            // Null means the distance from `from` to `at`.
+            "focus": camera.focus_distance,
+        },
+        // The origin of the buffers' coordinates, in scene coordinates.
+        "origin": exported.origin.to_array(),
+        "sliders": sliders(&job, recipe.samples_per_pixel, &exported.scene_index),
+        // Loop turns over lists for one ray.
+        "turns_over_lists": exported.turns_over_lists,
+        // Most samples per block.
+        "block_limit": exported.block_limit,
+        "overrides": overrides.collect::<Map<_, _>>(),
+        // Contents of the buffers of group 0.
+        "buffers": exported.buffers.map(|bytes| STANDARD.encode(bytes)),
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Camera, Material, Scene};
+    use crate::stages::Setup;
+    use glam::DVec3;
+
+    #[test]
+    fn stage_data_matches_recipe() {
+        for stage in Stage::ALL {
+            let (data, setup) = (stage_data(stage).unwrap(), stage.setup);
+            assert_eq!([&data["width"], &data["height"]], [setup.width, setup.height], "{}", stage.id);
+            assert_eq!(data["samples"], setup.samples_per_pixel, "{}", stage.id);
+            assert_eq!(data["depth"], setup.max_depth, "{}", stage.id);
+            assert_eq!(data["transfer"], setup.rules.transfer.tag(), "{}", stage.id);
+            let [from, at] =
+                [setup.camera.look_from, setup.camera.look_at].map(|point| json!(point.to_array()));
+            assert_eq!([&data["camera"]["from"], &data["camera"]["at"]], [&from, &at], "{}", stage.id);
+        }
+    }
+
+    #[test]
+    fn distant_scene_has_own_origin() {
+        const AWAY: DVec3 = DVec3::new(4096.0, 0.0, -65_536.0);
+        let near = Stage::find("normals").unwrap();
+        let scene = || {
+            let mut scene = Scene::default();
+            let matte = scene.add_material("matte", Material::Lambertian { albedo: DVec3::splat(0.5) });
+            scene.add_sphere(AWAY + DVec3::NEG_Z, 0.5, matte);
+            scene
+        };
+        let book = Camera::BOOK;
+        let camera = Camera { look_from: AWAY + book.look_from, look_at: AWAY + book.look_at, ..book };
+        let far = Stage { setup: Setup { scene, camera, ..near.setup }, ..*near };
+        for (stage, origin) in [(near, DVec3::ZERO), (&far, AWAY)] {
+            assert_eq!(stage_data(stage).unwrap()["origin"], json!(origin.to_array()));
+        }
+    }
 }

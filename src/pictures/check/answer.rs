@@ -47,18 +47,15 @@ pub struct Section {
 impl Section {
     /// The section with this number, if a stage or a mistake has it.
     fn find(number: &'static str) -> Option<Section> {
-        // Most sections are those of a stage; three of the mistakes belong to sections without a picture.
-        let (stage, heading) = match number {
-            "3.1" => ("ppm-gradient", Some("Color Utility Functions")),
-            "6.2" => ("normals", Some("Simplifying the Ray-Sphere Intersection Code")),
-            "6.4" => ("normals-world", Some("Front Faces Versus Back Faces")),
-            "8.2" => ("antialiased", None),
-            _ => (Stage::ALL.iter().find(|stage| stage.section == number)?.id, None),
+        // Most sections are those of a stage; four of the mistakes belong to sections without a picture.
+        let stage = match number {
+            "3.1" => "ppm-gradient",
+            "6.2" => "normals",
+            "6.4" => "normals-world",
+            "8.2" => "antialiased",
+            _ => Stage::ALL.iter().find(|stage| stage.section == number)?.id,
         };
-        let stage = Stage::find(stage).ok()?;
-        let chapter = if number == "3.1" { "The vec3 Class" } else { stage.chapter_title };
-        let url = book_url(chapter, Some(heading.unwrap_or(stage.section_title)));
-        Some(Section { number, url, stage })
+        Some(Section { number, url: book_url(number), stage: Stage::find(stage).ok()? })
     }
 }
 

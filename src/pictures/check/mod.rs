@@ -67,7 +67,7 @@ pub fn pictures(mine: &Mine, finding: &Finding) -> [Vec<[u8; 3]>; 3] {
 pub fn text(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> String {
     let (stage, answer) = (finding.stage, finding.answer(mine));
     let picture = format!("{}, {}, {}x{}", path.display(), mine.format, mine.width, mine.height);
-    let stage = format!("{}, section {}, {}", stage.id, stage.section, stage.section_title);
+    let stage = format!("{}, section {}, {}", stage.id, stage.section, stage.section_title());
     let mut text = vec![("picture", picture), ("stage", stage), ("verdict", answer.title)];
     text.push(("", answer.explanation));
     text.extend(answer.evidence.into_iter().map(|line| ("seen", line)));

@@ -7,16 +7,15 @@ mod random;
 
 pub use book::{BOOK_CAMERA, book};
 pub use chapters::{
-    LeftSphere, empty, matte_on_ground, metals, one_sphere, three_spheres, touching_spheres,
-    view_from_the_side,
+    LeftSphere, SIDE_VIEW, WIDE_LENS, empty, matte_on_ground, metals, one_sphere, three_spheres,
+    touching_spheres,
 };
 pub use field::{FIELD_COUNT_LIMITS, field, is_field};
 
 use super::{Camera, Scene};
-use std::fmt;
 
 /// A generated scene with default render settings.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct BuiltinScene {
     /// Name on the command line and in the window.
     pub name: &'static str,
@@ -31,16 +30,25 @@ pub struct BuiltinScene {
     pub build: fn() -> (Scene, Camera),
 }
 
+/// What most of them have in common.
+const SMALL: BuiltinScene = BuiltinScene {
+    name: "",
+    about: "",
+    width: 800,
+    height: 450,
+    samples_per_pixel: 128,
+    max_depth: 50,
+    build: || (empty(), Camera::BOOK),
+};
+
 impl BuiltinScene {
     /// A [`field`] of the default size.
     pub const FIELD: BuiltinScene = BuiltinScene {
         name: "field",
         about: "ten thousand small spheres on a wide ground; field:N has N of them",
-        width: 800,
-        height: 450,
-        samples_per_pixel: 128,
         max_depth: 24,
         build: || field(10_000),
+        ..SMALL
     };
 
     /// All built-in scenes, the default first.
@@ -48,11 +56,10 @@ impl BuiltinScene {
         BuiltinScene {
             name: "three-spheres",
             about: "hollow glass, matte and fuzzy metal side by side: the default (11.5)",
-            width: 800,
-            height: 450,
             samples_per_pixel: 200,
             max_depth: 24,
             build: || (three_spheres(LeftSphere::HollowGlass), Camera::BOOK),
+            ..SMALL
         },
         BuiltinScene {
             name: "book",
@@ -67,55 +74,31 @@ impl BuiltinScene {
         BuiltinScene {
             name: "two-spheres",
             about: "a grey matte ball on a grey matte ground: light transport and nothing else (9)",
-            width: 800,
-            height: 450,
-            samples_per_pixel: 128,
-            max_depth: 50,
             build: || (matte_on_ground(), Camera::BOOK),
+            ..SMALL
         },
         BuiltinScene {
             name: "metals",
             about: "a matte ball between a smooth and a brushed mirror (10.6)",
-            width: 800,
-            height: 450,
-            samples_per_pixel: 128,
-            max_depth: 50,
             build: || (metals(0.3, 1.0), Camera::BOOK),
+            ..SMALL
         },
         BuiltinScene {
             name: "close-up",
             about: "the three spheres from the side, through a wide lens (13.2)",
-            width: 800,
-            height: 450,
             samples_per_pixel: 256,
-            max_depth: 50,
-            build: || {
-                let camera = Camera {
-                    defocus_angle_degrees: 10.0,
-                    focus_distance: Some(3.4),
-                    ..view_from_the_side(20.0)
-                };
-                (three_spheres(LeftSphere::HollowGlass), camera)
-            },
+            build: || (three_spheres(LeftSphere::HollowGlass), WIDE_LENS),
+            ..SMALL
         },
         BuiltinScene {
             name: "touching-spheres",
             about: "a blue and a red ball that fill a right angle exactly (12.1)",
-            width: 800,
-            height: 450,
-            samples_per_pixel: 128,
-            max_depth: 50,
             build: || (touching_spheres(), Camera::BOOK),
+            ..SMALL
         },
     ];
 
     pub fn find(name: &str) -> Option<&'static BuiltinScene> {
         Self::ALL.iter().find(|scene| scene.name == name)
-    }
-}
-
-impl fmt::Debug for BuiltinScene {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("BuiltinScene").field("name", &self.name).finish_non_exhaustive()
     }
 }

@@ -4,7 +4,7 @@ use super::named;
 use crate::job::recipe::{DEFAULT_SAMPLES_PER_PIXEL, Recipe};
 use crate::job::render::{DEPTH_LIMIT, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::scene::animation::{FRAME_LIMIT, Keyframe};
-use crate::scene::{Camera, Material, Scene, SceneError, Sky};
+use crate::scene::{Camera, Material, Scene, Sky, missing_material};
 use crate::stages::Rules;
 use crate::system::files::{self, InputError, ShownPath};
 use crate::system::memory;
@@ -297,7 +297,7 @@ fn material_of(
     let what = format_args!("spheres[{sphere}].material");
     match value {
         toml::Value::String(name) => index_of.get(&name).copied().ok_or_else(|| {
-            let error = SceneError::MissingMaterial { sphere, material: name };
+            let error = missing_material(sphere, &name);
             error.to_string()
         }),
         table @ toml::Value::Table(_) => {

@@ -1,21 +1,92 @@
-//! Merges the existing parts of a plan, and says what is missing.
+//! `weekender merge`: adds films of the same picture, or the existing parts of a plan, and says which parts are missing.
 
-use super::{check_outputs, warn_of_loss, write, wrote};
 use crate::cli::terminal::print;
-use crate::cli::{MergeOptions, program};
-use crate::film::{Film, FilmSum, MergeError, checkpoint, key};
+use crate::cli::{MergeOptions, check_paths, program};
+use crate::film::{Description, Film, FilmSum, MergeError, SampleRanges, checkpoint, key, merge_files};
+use crate::job::output::{OutputFormat, write_image};
 use crate::job::plan::{Commands, Part, Plan};
-use crate::job::saved::same_job;
+use crate::job::recipe::file;
+use crate::job::saved::{Replaced, same_job};
 use crate::progressive::Status;
-use crate::progressive::describe::describe;
+use crate::progressive::describe::{counted, describe};
+use crate::stages::Transfer;
 use crate::system::console;
 use crate::system::failure::{FAILED, Failure};
-use crate::system::files::ShownPath;
+use crate::system::files::{FileLock, ShownPath, check_writable};
 use crate::system::shell::Shell;
+use anyhow::anyhow;
+use std::collections::HashSet;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
+/// Merges or checks what the options name.
+///
+/// # Errors
+/// [`Failure::Input`] if the films do not belong together, [`Failure::Run`] if the result cannot be written.
+pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
+    for out in &options.out {
+        OutputFormat::from_path(out).map_err(Failure::input)?;
+        check_writable(out).map_err(Failure::input)?;
+    }
+    let is_film = |out: &&PathBuf| matches!(OutputFormat::from_path(out), Ok(OutputFormat::Exr));
+    let locks = options.out.iter().filter(is_film).map(|out| FileLock::take(out));
+    let _locks = locks.collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
+    let refuse = |message: &str| Err(Failure::Input(anyhow!("{message}")));
+    match options.films.as_slice() {
+        [plan] if Plan::is_at(plan) => merge_parts(&Plan::load(plan).map_err(Failure::Input)?, options),
+        films if films.iter().any(|film| Plan::is_at(film)) => refuse(
+            "a plan names its parts itself: merge it alone, then merge the result with the other files",
+        ),
+        _ if options.check => refuse(
+            "--check needs a plan: only a plan says which parts there should be; make one with `weekender plan`",
+        ),
+        films => merge(films, options),
+    }
+}
+
+/// Merges films of one picture.
+fn merge(films: &[PathBuf], options: &MergeOptions) -> Result<ExitCode, Failure> {
+    let mut seen = HashSet::new();
+    let is_again = |film: &&PathBuf| !seen.insert(film.canonicalize().unwrap_or_else(|_| film.to_path_buf()));
+    if let Some(film) = films.iter().find(is_again) {
+        return Err(Failure::Input(anyhow!("{} is named twice; name it once", film.shown())));
+    }
+    check_outputs(films, options)?;
+    let sum = merge_files(films, same_job).map_err(Failure::input)?;
+    let recipe = file::parse(sum.description.recipe(), "the films' recipe").map_err(Failure::input)?;
+    let wrote = write(&options.out, &sum.film, recipe.rules.transfer, &sum.description)?;
+    let samples = sum.film.samples();
+    let (count, from) = (counted(samples.count(), "sample"), counted(films.len() as u64, "film"));
+    let text = format!("{count} per pixel ({samples}) from {from}\n{wrote}");
+    print(&text).map_err(Failure::Run)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Refuses to replace an input by a result.
+fn check_outputs(inputs: &[PathBuf], options: &MergeOptions) -> Result<(), Failure> {
+    let [inputs, outputs] = [inputs, &options.out].map(|paths| paths.iter().map(PathBuf::as_path));
+    check_paths(inputs, outputs).map_err(Failure::Input)
+}
+
+/// Writes a sum, and returns a line for each file. Warns of samples that are lost because it replaces a film that has
+/// others.
+fn write(
+    out: &[PathBuf],
+    film: &Film,
+    transfer: Transfer,
+    description: &Description,
+) -> Result<String, Failure> {
+    let is_kept = |samples: &SampleRanges| film.samples().contains(samples);
+    for warning in out.iter().filter_map(|out| Replaced::at(out, description.recipe()).warning(out, is_kept))
+    {
+        console::note(&format!("warning: {warning}"));
+    }
+    out.iter().try_for_each(|out| write_image(out, film, transfer, description)).map_err(Failure::run)?;
+    Ok(out.iter().map(|out| format!("wrote {}\n", out.shown())).collect())
+}
+
 /// Merges or checks the parts.
-pub(super) fn run(plan: &Plan, options: &MergeOptions) -> Result<ExitCode, Failure> {
+fn merge_parts(plan: &Plan, options: &MergeOptions) -> Result<ExitCode, Failure> {
     check_outputs(&plan.files(), options)?;
     let mut sum = empty_sum(plan).map_err(Failure::input)?;
     let parts = &plan.manifest.parts;
@@ -34,9 +105,8 @@ pub(super) fn run(plan: &Plan, options: &MergeOptions) -> Result<ExitCode, Failu
         print(&std::iter::once(found).chain(lines).collect::<String>()).map_err(Failure::Run)?;
     } else {
         if count > 0 {
-            warn_of_loss(&options.out, film, &sum.description());
-            write(&options.out, film, plan.recipe.rules.transfer, &sum.description())?;
-            print(&(found + &wrote(&options.out))).map_err(Failure::Run)?;
+            let wrote = write(&options.out, film, plan.recipe.rules.transfer, &sum.description())?;
+            print(&(found + &wrote)).map_err(Failure::Run)?;
         } else {
             console::note(&found);
         }
