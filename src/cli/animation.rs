@@ -2,7 +2,7 @@
 
 use super::check_paths;
 use super::render::RenderFlags;
-use super::sources::{self, PictureFlags};
+use super::sources;
 use super::values::{ProgressChoice, parse_turn, range};
 use crate::backends::BackendChoice;
 use crate::job::recipe::Recipe;
@@ -33,39 +33,6 @@ impl AnimationFlags {
     pub fn is_given(&self) -> bool {
         self.frames.is_some() || self.turntable.is_some()
     }
-
-    /// The frames to render, whose cameras are valid, and how the camera moves.
-    fn of(
-        &self,
-        job: &RenderJob,
-        recipe: &Recipe,
-        picture: &PictureFlags,
-    ) -> Result<(Range<u32>, CameraPath)> {
-        let path = match self.turntable {
-            Some(turn) => CameraPath::Turntable { start: recipe.camera, turn },
-            None if recipe.keyframes.is_empty() => {
-                bail!(
-                    "--frames needs --turntable: the scene has no [[keyframes]], so the camera would not move"
-                )
-            }
-            None if picture.camera != Default::default() => bail!(
-                "flags of the camera such as --look-from and --vfov cannot be used with the keyframes of the scene file: \
-                 they set the camera; change them, or use --turntable"
-            ),
-            None => CameraPath::Keyframes { still: recipe.camera, keyframes: recipe.keyframes.clone() },
-        };
-        let frames = match (&self.frames, self.turntable) {
-            (Some(frames), _) => frames.clone(),
-            (None, Some(Turn::FramesPerTurn(count))) => 0..count,
-            (None, _) => bail!(
-                "--turntable in degrees needs --frames: it has no whole number of frames a turn; give A..B"
-            ),
-        };
-        for frame in frames.clone() {
-            job.seen_by(path.camera(frame), *job.settings()).with_context(|| format!("frame {frame}"))?;
-        }
-        Ok((frames, path))
-    }
 }
 
 /// Options of `--batch --frames`.
@@ -91,7 +58,28 @@ pub struct FramesOptions {
 /// Validates the flags of an animation.
 pub(super) fn frames(flags: RenderFlags) -> Result<FramesOptions> {
     let (chosen, job) = sources::picture(&flags.picture, &flags.samples, None)?;
-    let (frames, path) = flags.animation.of(&job, &chosen.recipe, &flags.picture)?;
+    let (recipe, AnimationFlags { frames, turntable }) = (&chosen.recipe, flags.animation);
+    let path = match turntable {
+        Some(turn) => CameraPath::Turntable { start: recipe.camera, turn },
+        None if recipe.keyframes.is_empty() => {
+            bail!("--frames needs --turntable: the scene has no [[keyframes]], so the camera would not move")
+        }
+        None if flags.picture.camera != Default::default() => bail!(
+            "flags of the camera such as --look-from and --vfov cannot be used with the keyframes of the scene file: \
+             they set the camera; change them, or use --turntable"
+        ),
+        None => CameraPath::Keyframes { still: recipe.camera, keyframes: recipe.keyframes.clone() },
+    };
+    let frames = match (frames, turntable) {
+        (Some(frames), _) => frames,
+        (None, Some(Turn::FramesPerTurn(count))) => 0..count,
+        (None, _) => {
+            bail!("--turntable in degrees needs --frames: it has no whole number of frames a turn; give A..B")
+        }
+    };
+    for frame in frames.clone() {
+        job.seen_by(path.camera(frame), *job.settings()).with_context(|| format!("frame {frame}"))?;
+    }
     let Some(out) = flags.files.out.as_deref().filter(|_| flags.batch) else {
         bail!(
             "an animation needs --batch and --out: it writes many pictures; name a directory, or a pattern such as \
@@ -115,18 +103,17 @@ pub(super) fn frames(flags: RenderFlags) -> Result<FramesOptions> {
     })
 }
 
-/// The files of the frames.
+/// The files of the frames: `frame-0000.png` and so on in a directory, or those of a pattern.
 fn names(out: &Path) -> Result<FrameNames> {
     let is_pattern = out.file_name().is_some_and(|name| name.to_string_lossy().contains('#'));
-    let is_png = out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
-    match FrameNames::of_pattern(out) {
-        _ if out.is_dir() => Ok(FrameNames::in_directory(out)),
-        Some(names) if is_png => Ok(names),
-        _ if out.extension().is_none() && !is_pattern => Ok(FrameNames::in_directory(out)),
-        _ => bail!(
+    let is_directory = out.is_dir() || (out.extension().is_none() && !is_pattern);
+    let pattern = if is_directory { out.join("frame-####.png") } else { out.to_owned() };
+    let is_png = pattern.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
+    FrameNames::of_pattern(&pattern).filter(|_| is_png).with_context(|| {
+        format!(
             "--out is {}, but an animation is a directory of PNG files, or a pattern with a single row of # such as \
              turn-####.png; other programs, such as ffmpeg, make a film of them",
             out.shown()
-        ),
-    }
+        )
+    })
 }

@@ -218,12 +218,6 @@ pub struct FrameNames {
 }
 
 impl FrameNames {
-    /// `frame-0000.png`, `frame-0001.png` and so on in a directory.
-    pub fn in_directory(directory: &Path) -> FrameNames {
-        let (before, after) = ("frame-".to_owned(), ".png".to_owned());
-        FrameNames { directory: directory.to_owned(), before, digits: 4, after }
-    }
-
     /// Names from a pattern such as `shots/turn-####.png`, whose `#` signs stand for the number and its minimum digits.
     /// `None` unless the file name has exactly one run of them.
     pub fn of_pattern(pattern: &Path) -> Option<FrameNames> {

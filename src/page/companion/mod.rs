@@ -11,13 +11,11 @@ mod measured;
 mod page;
 mod pictures;
 mod prose;
-mod section;
 mod site;
 mod timeline;
 
-pub use excerpt::Excerpt;
+pub use excerpt::{Excerpt, excerpts_between};
 pub use highlight::Highlighter;
-pub use section::excerpts_between;
 
 use crate::cli::CompanionOptions;
 use crate::page::gallery::{Order, Outcome, Work};

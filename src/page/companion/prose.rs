@@ -2,8 +2,8 @@
 
 use super::chapter::Chapter;
 use super::directive::{self, typographic};
+use super::excerpt::split_heading;
 use super::library::{Fault, line_of};
-use super::section::split_heading;
 use super::site::{Site, Uses};
 use crate::page::gallery::Figure;
 use crate::stages;
