@@ -35,16 +35,11 @@ pub struct FilmSum {
     description: Description,
     /// The file or plan that the others must match.
     first: PathBuf,
-    parts: Vec<Part>,
-}
-
-/// A film in a sum.
-#[derive(Clone, Debug)]
-struct Part {
-    path: PathBuf,
-    samples: SampleRanges,
+    /// The files with their samples.
+    parts: Vec<(PathBuf, SampleRanges)>,
+    backends: Vec<String>,
+    /// Seconds of tracing, if all files have them.
     seconds: Option<f64>,
-    backend: Option<String>,
 }
 
 impl FilmSum {
@@ -61,7 +56,10 @@ impl FilmSum {
     ) -> Result<Self, MergeError> {
         let (first, other) = (first.to_owned(), first.to_owned());
         match Film::try_new(width, height, halves) {
-            Ok(film) => Ok(FilmSum { film, description, first, parts: Vec::new() }),
+            Ok(film) => {
+                let (parts, backends) = (Vec::new(), Vec::new());
+                Ok(FilmSum { film, description, first, parts, backends, seconds: Some(0.0) })
+            }
             Err(reason) => Err(MergeError::Film { first, other, reason }),
         }
     }
@@ -81,18 +79,17 @@ impl FilmSum {
         if let Err(difference) = same_job(self.description.recipe(), description.recipe()) {
             return Err(MergeError::OtherJob { first, other, difference });
         }
-        for part in &self.parts {
-            if let Some(range) = part.samples.first_common(film.samples()) {
-                return Err(MergeError::Overlap { first: part.path.clone(), other, range });
+        for (path, samples) in &self.parts {
+            if let Some(range) = samples.first_common(film.samples()) {
+                return Err(MergeError::Overlap { first: path.clone(), other, range });
             }
         }
         self.film.merge(&film).map_err(|reason| MergeError::Film { first, other, reason })?;
-        self.parts.push(Part {
-            path: path.to_owned(),
-            samples: film.samples().clone(),
-            seconds: description.get(key::SECONDS).and_then(|seconds| seconds.parse().ok()),
-            backend: description.get(key::BACKEND).map(str::to_owned),
-        });
+        self.parts.push((path.to_owned(), film.samples().clone()));
+        let backend = description.get(key::BACKEND).map(str::to_owned);
+        self.backends.extend(backend.filter(|backend| !self.backends.contains(backend)));
+        let seconds = description.get(key::SECONDS).and_then(|seconds| seconds.parse::<f64>().ok());
+        self.seconds = self.seconds.zip(seconds).map(|(sum, seconds)| sum + seconds);
         Ok(film.samples().clone())
     }
 
@@ -105,16 +102,10 @@ impl FilmSum {
     pub fn description(&self) -> Description {
         let mut description = self.description.clone();
         description.set(key::SAMPLES, self.film.sample_count());
-        let mut backends: Vec<&str> = Vec::new();
-        for backend in self.parts.iter().filter_map(|part| part.backend.as_deref()) {
-            if !backends.contains(&backend) {
-                backends.push(backend);
-            }
+        if !self.backends.is_empty() {
+            description.set(key::BACKEND, self.backends.join("; "));
         }
-        if !backends.is_empty() {
-            description.set(key::BACKEND, backends.join("; "));
-        }
-        if let Some(seconds) = self.parts.iter().map(|part| part.seconds).sum::<Option<f64>>() {
+        if let Some(seconds) = self.seconds {
             description.set(key::SECONDS, seconds);
         }
         description

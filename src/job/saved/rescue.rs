@@ -21,11 +21,10 @@ pub fn rescue(
     film: &Film,
     description: &Description,
 ) -> Result<PathBuf, String> {
-    if let Some(state) = state_directory() {
-        // If this fails, writing the file will report it.
-        let _ = std::fs::create_dir_all(state);
-    }
-    let others = [Some(env::temp_dir()), state_directory(), home_directory()];
+    let state = state_directory();
+    // If this fails, writing the file will report it.
+    let _ = state.as_ref().map(std::fs::create_dir_all);
+    let others = [Some(env::temp_dir()), state, home_directory()];
     let places: Vec<PathBuf> = first.iter().cloned().chain(others.into_iter().flatten()).collect();
     keep_in(&places, name, film, description)
 }

@@ -34,11 +34,7 @@ fn chart(scene: &str, curves: &[CurveSummary], target: f64) -> LineChart {
     let bottom = 0.7 * errors[0];
     let mut series = guides(times, errors, bottom, &of_scene, target);
     series.extend(of_scene.iter().map(|curve| measured(curve, bottom)));
-    let axis = |label: &str, limits: [f64; 2]| {
-        // A chart without points has no limits.
-        let limits = (limits[0] > 0.0 && limits[0] < limits[1]).then_some(limits);
-        Axis { limits, ..Axis::new(label) }
-    };
+    let axis = |label: &str, limits: [f64; 2]| Axis { label: label.to_owned(), limits };
     LineChart {
         title: scene.to_owned(),
         x: axis("seconds of rendering", [0.8 * times[0], 1.25 * times[1]]),

@@ -4,14 +4,11 @@
 //! needed.
 
 mod axis;
-mod file;
 mod lines;
-mod page;
-mod style;
+mod svg;
 
 pub use axis::Axis;
-pub use file::svg;
-pub use page::{UNTITLED_TOP, page_svg};
+pub use svg::{UNTITLED_TOP, page_svg, svg};
 
 /// A picture of one or more charts.
 #[derive(Clone, Debug, PartialEq)]
