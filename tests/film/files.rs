@@ -2,7 +2,6 @@
 
 use super::common::{description, noisy_film};
 use proptest::prelude::*;
-use std::io::Cursor;
 use std::ops::Range;
 use std::path::Path;
 use weekender::film::{CheckpointError, Film, FilmFile, checkpoint, key};

@@ -3,7 +3,7 @@
 use super::{check_outputs, warn_of_loss, write, wrote};
 use crate::cli::terminal::print;
 use crate::cli::{MergeOptions, program};
-use crate::film::{Film, FilmSum, MergeError, checkpoint, key};
+use crate::film::{Film, FilmSum, checkpoint, key};
 use crate::job::plan::{Commands, Part, Plan};
 use crate::job::saved::same_job;
 use crate::progressive::Status;
@@ -45,7 +45,7 @@ pub(super) fn run(plan: &Plan, options: &MergeOptions) -> Result<ExitCode, Failu
     Ok(if lacking.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(FAILED) })
 }
 
-fn empty_sum(plan: &Plan) -> Result<FilmSum, MergeError> {
+fn empty_sum(plan: &Plan) -> anyhow::Result<FilmSum> {
     let settings = plan.job.settings();
     let mut description = describe(&plan.recipe, plan.stage(), &Film::new(1, 1, 1), &Status::default(), None);
     description.set(key::COMMAND, &plan.manifest.command);
@@ -68,12 +68,7 @@ fn add(sum: &mut FilmSum, plan: &Plan, part: &Part) -> Result<(), String> {
             "{path} holds the samples {samples}, but this part has {start}..{end}; move the file away"
         ));
     }
-    let samples = sum.add(&path, same_job).map_err(|error| match error {
-        MergeError::OtherJob { other, difference, .. } => {
-            format!("{} is the film of another picture: {difference}; move it away", other.shown())
-        }
-        error => error.to_string(),
-    })?;
+    let samples = sum.add(&path, same_job).map_err(|error| format!("{error:#}"))?;
     match (part.missing(&samples), end - start) {
         (0, _) => Ok(()),
         (missing, of) => Err(format!("{file} has {} of {of} samples per pixel", of - missing)),

@@ -57,7 +57,8 @@ fn measured(curve: &CurveSummary, bottom: f64) -> Series {
 }
 
 fn guide(name: &str, ends: [(f64, f64); 2]) -> Series {
-    Series::new(name, Look::Guide, ends)
+    let points = ends.map(|(x, y)| Point { x, y, spread: None }).to_vec();
+    Series { name: name.to_owned(), points, look: Look::Guide }
 }
 
 /// Guides: the slope of independent samples, the target, and the time each curve reaches it.

@@ -45,14 +45,6 @@ pub struct Series {
     pub look: Look,
 }
 
-impl Series {
-    /// Points without a spread.
-    pub fn new(name: impl Into<String>, look: Look, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        let points = points.into_iter().map(|(x, y)| Point { x, y, spread: None }).collect();
-        Series { name: name.into(), points, look }
-    }
-}
-
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {
     /// A line with a mark at each point, in the series' own colour and shape.
