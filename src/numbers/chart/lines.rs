@@ -1,15 +1,12 @@
 //! Lines over two axes.
 
 use super::axis::position;
-use super::svg::{FAINT_INK, FINE_GRID, FONT, GRID, GUIDE, INK, PALETTE};
+use super::svg::{Area, Drawn, FAINT_INK, FINE_GRID, FONT, GRID, GUIDE, INK, PALETTE};
 use super::{LineChart, Look, Point};
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
-
-pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart) -> Drawn<B> {
+pub fn draw(area: &Area, chart: &LineChart) -> Drawn {
     let mut builder = ChartBuilder::on(area);
     let measured = chart.series.iter().filter(|series| series.look == Look::Measured);
     let longest = measured.map(|series| series.name.chars().count()).max().unwrap_or(0);

@@ -30,6 +30,9 @@ pub const PALETTE: [RGBColor; 6] = [
     RGBColor(0x56, 0xB4, 0xE9),
 ];
 
+pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(super) type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+
 /// A name that SVG readers know, too.
 pub const FONT: &str = "sans-serif";
 
@@ -49,10 +52,7 @@ pub fn svg(figure: &Figure) -> Result<String> {
     Ok(text)
 }
 
-fn draw<B: DrawingBackend>(
-    area: &DrawingArea<B, Shift>,
-    figure: &Figure,
-) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
+fn draw(area: &Area, figure: &Figure) -> Drawn {
     area.fill(&WHITE)?;
     area.draw_text(&figure.title, &(FONT, 22, &INK).into_text_style(area), (16, 14))?;
     area.draw_text(&figure.about, &(FONT, 14, &FAINT_INK).into_text_style(area), (16, 42))?;

@@ -67,8 +67,7 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), WriteError> {
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     let check = || match Target::find(path)? {
         // Opening a pipe would wait for its reader, and closing it would end the reader's input.
-        Target::StandardOutput | Target::Device { is_pipe: true, .. } => Ok(()),
-        Target::Device { path, .. } => OpenOptions::new().write(true).open(path).map(drop),
+        Target::StandardOutput | Target::Device => Ok(()),
         Target::File { path, directory, old } => {
             leftovers::remove_from(&directory);
             new_file_in(&directory, old.as_ref())?.close()?;
@@ -93,7 +92,7 @@ pub fn check_replaceable(path: &Path) -> Result<(), WriteError> {
 enum Target {
     StandardOutput,
     File { path: PathBuf, directory: PathBuf, old: Option<Metadata> },
-    Device { path: PathBuf, is_pipe: bool },
+    Device,
 }
 
 impl Target {
@@ -106,9 +105,7 @@ impl Target {
         }
         let old = match fs::metadata(named) {
             Ok(found) if found.is_dir() => return Err(ErrorKind::IsADirectory.into()),
-            Ok(found) if !found.is_file() => {
-                return Ok(Target::Device { path: named.to_owned(), is_pipe: is_pipe(&found) });
-            }
+            Ok(found) if !found.is_file() => return Ok(Target::Device),
             // A rename would replace a read-only file anyway, but the user marked it to prevent that.
             Ok(found) if found.permissions().readonly() => {
                 return Err(io::Error::new(ErrorKind::PermissionDenied, "the file is marked read-only"));
@@ -227,7 +224,7 @@ fn try_write(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Resul
             file.rewind()?;
             io::copy(&mut file, &mut io::stdout().lock()).map(drop)
         }
-        Target::Device { path, .. } => fill(&OpenOptions::new().write(true).open(path)?),
+        Target::Device => fill(&OpenOptions::new().write(true).open(path)?),
         Target::File { path, directory, old } => {
             let new = new_file_in(&directory, old.as_ref())?;
             fill(new.as_file())?;

@@ -64,7 +64,7 @@ pub fn parse(text: &str, name: &str) -> anyhow::Result<Recipe> {
         }
         error_at(text, name, place, &reason)
     })?;
-    recipe_of(raw, name).map_err(|refusal| error_at(text, name, refusal.place.start, &refusal.reason))
+    recipe_of(raw, name).map_err(|(place, reason)| error_at(text, name, place.start, &reason))
 }
 
 /// Whether the line at `place` has a comma between two digits and is no list.
@@ -168,14 +168,11 @@ struct RawSettings {
     estimate_error: Option<bool>,
 }
 
-/// Why no picture can be made, and where in the text.
-struct Refusal {
-    place: Range<usize>,
-    reason: String,
-}
+/// Where in the text something is wrong, and what.
+type Refusal = (Range<usize>, String);
 
 fn refuse(place: Range<usize>, reason: impl Display) -> Refusal {
-    Refusal { place, reason: reason.to_string() }
+    (place, reason.to_string())
 }
 
 /// Checks every value here, where its position in the text is known.
@@ -261,7 +258,7 @@ fn listed_scene(
         let place = sphere.span();
         let RawSphere { center, radius, material } = sphere.into_inner();
         let material = material_of(material, index, &mut scene, &mut index_of)
-            .map_err(|reason| Refusal { place: place.clone(), reason })?;
+            .map_err(|reason| refuse(place.clone(), reason))?;
         scene.add_sphere(center.into(), radius, material);
         let validated = scene.spheres[index].validate(index, scene.materials.len());
         validated.map_err(|error| refuse(place, error))?;
