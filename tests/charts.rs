@@ -5,8 +5,8 @@
 use weekender::numbers::chart::{Axis, Figure, LineChart, Look, Point, Series, svg};
 
 fn figure(series: Vec<Series>) -> Figure {
-    let chart =
-        LineChart { title: "Error".to_owned(), x: Axis::new("seconds"), y: Axis::new("RMSE"), series };
+    let axis = |label: &str| Axis { label: label.to_owned(), limits: [1e-300, 1e300] };
+    let chart = LineChart { title: "Error".to_owned(), x: axis("seconds"), y: axis("RMSE"), series };
     let (title, about) = ("A title".to_owned(), "and a line".to_owned());
     Figure { title, about, size: [480, 360], columns: 1, panels: vec![chart] }
 }
@@ -19,4 +19,7 @@ fn what_cannot_be_shown_is_left_out() {
     let none = Series { name: "none".to_owned(), points: Vec::new(), look: Look::Guide };
     svg(&figure(vec![odd, none])).unwrap();
     svg(&Figure { panels: Vec::new(), ..figure(Vec::new()) }).unwrap();
+    let mut empty = figure(Vec::new());
+    empty.panels[0].x.limits = [f64::INFINITY, 0.0];
+    svg(&empty).unwrap();
 }

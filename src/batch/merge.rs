@@ -2,7 +2,7 @@
 
 use crate::cli::terminal::print;
 use crate::cli::{MergeOptions, check_paths, program};
-use crate::film::{Description, Film, FilmSum, MergeError, SampleRanges, checkpoint, key, merge_files};
+use crate::film::{Description, Film, FilmSum, SampleRanges, checkpoint, key, merge_files};
 use crate::job::output::{OutputFormat, write_image};
 use crate::job::plan::{Commands, Part, Plan};
 use crate::job::recipe::file;
@@ -115,7 +115,7 @@ fn merge_parts(plan: &Plan, options: &MergeOptions) -> Result<ExitCode, Failure>
     Ok(if lacking.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(FAILED) })
 }
 
-fn empty_sum(plan: &Plan) -> Result<FilmSum, MergeError> {
+fn empty_sum(plan: &Plan) -> anyhow::Result<FilmSum> {
     let settings = plan.job.settings();
     let mut description = describe(&plan.recipe, plan.stage(), &Film::new(1, 1, 1), &Status::default(), None);
     description.set(key::COMMAND, &plan.manifest.command);
@@ -138,12 +138,7 @@ fn add(sum: &mut FilmSum, plan: &Plan, part: &Part) -> Result<(), String> {
             "{path} holds the samples {samples}, but this part has {start}..{end}; move the file away"
         ));
     }
-    let samples = sum.add(&path, same_job).map_err(|error| match error {
-        MergeError::OtherJob { other, difference, .. } => {
-            format!("{} is the film of another picture: {difference}; move it away", other.shown())
-        }
-        error => error.to_string(),
-    })?;
+    let samples = sum.add(&path, same_job).map_err(|error| format!("{error:#}"))?;
     match (part.missing(&samples), end - start) {
         (0, _) => Ok(()),
         (missing, of) => Err(format!("{file} has {} of {of} samples per pixel", of - missing)),

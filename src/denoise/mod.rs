@@ -11,8 +11,9 @@
 
 mod filter;
 
-use crate::film::{FIXED_POINT_MAX, FIXED_POINT_SCALE, Film, FilmError, PixelSum};
+use crate::film::{FIXED_POINT_MAX, FIXED_POINT_SCALE, Film, PixelSum};
 use crate::system::memory;
+use anyhow::{Result, bail, ensure};
 use fearless_simd::{Level, Simd as _, dispatch};
 use filter::{HIGH, Half, Place, Scratch, WIDE};
 use rayon::prelude::*;
@@ -21,17 +22,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Smaller pictures have too few pixels to tell an error from.
 const LEAST_PIXELS: usize = 64;
-
-/// Why a film has no denoised picture.
-#[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
-pub enum DenoiseError {
-    #[error("{0}, and denoising needs two halves with light: render more samples, with --estimate-error on")]
-    Halves(&'static str),
-    #[error("telling the error of denoising takes {LEAST_PIXELS} pixels, and the picture has {pixels}")]
-    Small { pixels: usize },
-    #[error(transparent)]
-    Film(#[from] FilmError),
-}
 
 /// The means of a film's halves.
 pub struct Halves {
@@ -47,19 +37,23 @@ pub struct Halves {
 
 impl Halves {
     /// # Errors
-    /// [`DenoiseError`] if a half is missing, empty or black, or if the picture is too small or too large.
-    pub fn of(film: &Film) -> Result<Self, DenoiseError> {
+    /// If a half is missing, empty or black, or if the picture is too small or too large.
+    pub fn of(film: &Film) -> Result<Self> {
         let pixels = film.width() as usize * film.height() as usize;
-        if pixels < LEAST_PIXELS {
-            return Err(DenoiseError::Small { pixels });
-        }
+        ensure!(
+            pixels >= LEAST_PIXELS,
+            "telling the error of denoising takes {LEAST_PIXELS} pixels, and the picture has {pixels}"
+        );
         let counts = [0, 1].map(|half| film.half_sample_count(half));
         let (Some(error), [a, b]) = (film.error(), film.halves()) else {
-            return Err(DenoiseError::Halves(film.why_no_error()));
+            bail!(
+                "{}, and denoising needs two halves with light: render more samples, with --estimate-error on",
+                film.why_no_error()
+            );
         };
         let what = || format!("denoising {}x{} pixels", film.width(), film.height());
         let bytes = pixels * (2 * size_of::<[f32; 3]>() + size_of::<PixelSum>() + size_of::<f32>());
-        memory::check(what, bytes as u64, "choose a smaller picture").map_err(FilmError::from)?;
+        memory::check(what, bytes as u64, "choose a smaller picture")?;
         let means = |half: &Vec<PixelSum>, count: u64| {
             let unit = count as f64 * FIXED_POINT_SCALE;
             half.par_iter().map(|sum| sum.0.map(|k| (k as f64 / unit) as f32)).collect()
@@ -164,7 +158,7 @@ fn local(width: usize, squared_errors: &[f32]) -> Vec<f32> {
 ///
 /// # Errors
 /// Those of [`Halves::of`].
-pub fn of_film(film: &Film) -> Result<Denoised, DenoiseError> {
+pub fn of_film(film: &Film) -> Result<Denoised> {
     Ok(filtered(Halves::of(film)?, Level::new(), &AtomicBool::new(false)))
 }
 

@@ -1,32 +1,10 @@
 //! Merges films from several files.
 
-use super::{
-    CheckpointError, Description, Film, FilmError, FilmFile, FilmHead, SampleRanges, checkpoint, key,
-};
+use super::{Description, Film, FilmFile, FilmHead, SampleRanges, checkpoint, key};
 use crate::system::files::ShownPath;
+use anyhow::{Context, Result, bail};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-
-/// Why film files cannot be merged.
-#[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
-pub enum MergeError {
-    #[error("no film was named; name the film files to merge")]
-    NoFiles,
-    #[error(transparent)]
-    File(#[from] CheckpointError),
-    #[error(
-        "{} and {} are films of different jobs: {difference}; only films of one job with different samples can be merged",
-        first.shown(), other.shown()
-    )]
-    OtherJob { first: PathBuf, other: PathBuf, difference: String },
-    #[error(
-        "{} and {} both hold the samples {}..{}; each sample may be added only once, so leave one of the files out",
-        first.shown(), other.shown(), range.start, range.end
-    )]
-    Overlap { first: PathBuf, other: PathBuf, range: Range<u64> },
-    #[error("{} and {} cannot be merged: {reason}", first.shown(), other.shown())]
-    Film { first: PathBuf, other: PathBuf, reason: FilmError },
-}
 
 /// The sum of the films of several files. Adding one needs memory for it besides the sum.
 #[derive(Clone, Debug)]
@@ -35,64 +13,63 @@ pub struct FilmSum {
     description: Description,
     /// The file or plan that the others must match.
     first: PathBuf,
-    parts: Vec<Part>,
-}
-
-/// A film in a sum.
-#[derive(Clone, Debug)]
-struct Part {
-    path: PathBuf,
-    samples: SampleRanges,
+    /// The files with their samples.
+    parts: Vec<(PathBuf, SampleRanges)>,
+    backends: Vec<String>,
+    /// Seconds of tracing, if all files have them.
     seconds: Option<f64>,
-    backend: Option<String>,
 }
 
 impl FilmSum {
     /// An empty sum of films with this many pixels and halves. `recipe` and messages come from `first`.
     ///
     /// # Errors
-    /// [`MergeError::Film`] if there is not enough memory.
+    /// If there is not enough memory.
     pub fn new(
         width: u32,
         height: u32,
         halves: usize,
         description: Description,
         first: &Path,
-    ) -> Result<Self, MergeError> {
-        let (first, other) = (first.to_owned(), first.to_owned());
-        match Film::try_new(width, height, halves) {
-            Ok(film) => Ok(FilmSum { film, description, first, parts: Vec::new() }),
-            Err(reason) => Err(MergeError::Film { first, other, reason }),
-        }
+    ) -> Result<Self> {
+        let film = Film::try_new(width, height, halves)
+            .with_context(|| format!("{} cannot be merged", first.shown()))?;
+        let (first, parts, backends) = (first.to_owned(), Vec::new(), Vec::new());
+        Ok(FilmSum { film, description, first, parts, backends, seconds: Some(0.0) })
     }
 
     /// Adds the film of a file and returns its samples. `same_job` gets the recipes of the sum and of the file, and
     /// returns what differs if their jobs do.
     ///
     /// # Errors
-    /// [`MergeError`]; the sum is then unchanged.
+    /// Which files do not match, and why; the sum is then unchanged.
     pub fn add(
         &mut self,
         path: &Path,
         same_job: impl Fn(&str, &str) -> Result<(), String>,
-    ) -> Result<SampleRanges, MergeError> {
+    ) -> Result<SampleRanges> {
         let FilmFile { film, description } = checkpoint::load(path)?;
-        let (first, other) = (self.first.clone(), path.to_owned());
+        let (first, other) = (self.first.shown(), path.shown());
         if let Err(difference) = same_job(self.description.recipe(), description.recipe()) {
-            return Err(MergeError::OtherJob { first, other, difference });
+            bail!(
+                "{other} is the film of another picture than {first}: {difference}; leave it out, or move it away"
+            );
         }
-        for part in &self.parts {
-            if let Some(range) = part.samples.first_common(film.samples()) {
-                return Err(MergeError::Overlap { first: part.path.clone(), other, range });
+        for (path, samples) in &self.parts {
+            if let Some(Range { start, end }) = samples.first_common(film.samples()) {
+                bail!(
+                    "{} and {other} both hold the samples {start}..{end}; each sample may be added only once, so leave one of \
+                     the files out",
+                    path.shown()
+                );
             }
         }
-        self.film.merge(&film).map_err(|reason| MergeError::Film { first, other, reason })?;
-        self.parts.push(Part {
-            path: path.to_owned(),
-            samples: film.samples().clone(),
-            seconds: description.get(key::SECONDS).and_then(|seconds| seconds.parse().ok()),
-            backend: description.get(key::BACKEND).map(str::to_owned),
-        });
+        self.film.merge(&film).with_context(|| format!("{first} and {other} cannot be merged"))?;
+        self.parts.push((path.to_owned(), film.samples().clone()));
+        let backend = description.get(key::BACKEND).map(str::to_owned);
+        self.backends.extend(backend.filter(|backend| !self.backends.contains(backend)));
+        let seconds = description.get(key::SECONDS).and_then(|seconds| seconds.parse::<f64>().ok());
+        self.seconds = self.seconds.zip(seconds).map(|(sum, seconds)| sum + seconds);
         Ok(film.samples().clone())
     }
 
@@ -105,16 +82,10 @@ impl FilmSum {
     pub fn description(&self) -> Description {
         let mut description = self.description.clone();
         description.set(key::SAMPLES, self.film.sample_count());
-        let mut backends: Vec<&str> = Vec::new();
-        for backend in self.parts.iter().filter_map(|part| part.backend.as_deref()) {
-            if !backends.contains(&backend) {
-                backends.push(backend);
-            }
+        if !self.backends.is_empty() {
+            description.set(key::BACKEND, self.backends.join("; "));
         }
-        if !backends.is_empty() {
-            description.set(key::BACKEND, backends.join("; "));
-        }
-        if let Some(seconds) = self.parts.iter().map(|part| part.seconds).sum::<Option<f64>>() {
+        if let Some(seconds) = self.seconds {
             description.set(key::SECONDS, seconds);
         }
         description
@@ -127,12 +98,12 @@ impl FilmSum {
 /// The description is that of the first file, see [`FilmSum::description`].
 ///
 /// # Errors
-/// [`MergeError`], with the files that do not match.
+/// Which files do not match, and why.
 pub fn merge_files<P: AsRef<Path>>(
     paths: &[P],
     same_job: impl Fn(&str, &str) -> Result<(), String>,
-) -> Result<FilmFile, MergeError> {
-    let [first, ..] = paths else { return Err(MergeError::NoFiles) };
+) -> Result<FilmFile> {
+    let first = paths.first().context("no film was named; name the film files to merge")?;
     let FilmHead { width, height, halves, description, .. } = checkpoint::read_head(first.as_ref())?;
     let mut sum = FilmSum::new(width, height, halves, description, first.as_ref())?;
     for path in paths {

@@ -4,11 +4,10 @@
 pub struct HeatScale {
     /// Quantity and unit.
     pub title: &'static str,
-    /// Values at the two ends.
+    /// Values at the two ends. The scale is logarithmic unless it begins at 0.
     limits: [f64; 2],
-    is_logarithmic: bool,
-    /// Values labelled in a legend; if empty, they are derived from the limits.
-    marks: &'static [(f64, &'static str)],
+    /// Parts between the labels of a legend.
+    parts: u8,
 }
 
 /// Dark to bright, evenly spaced.
@@ -24,50 +23,30 @@ const COLOURS: [[f64; 3]; 7] = [
 
 impl HeatScale {
     /// Errors, linear radiance.
-    pub const ERROR: HeatScale = HeatScale {
-        title: "linear radiance",
-        limits: [1e-4, 1.0],
-        is_logarithmic: true,
-        marks: &[(1e-4, "0.0001"), (1e-3, "0.001"), (1e-2, "0.01"), (0.1, "0.1"), (1.0, "1")],
-    };
+    pub const ERROR: HeatScale = HeatScale { title: "linear radiance", limits: [1e-4, 1.0], parts: 4 };
 
     /// Absolute differences of two pictures, linear radiance.
     pub const DIFFERENCE: HeatScale =
         HeatScale { title: "|difference|, linear radiance", ..HeatScale::ERROR };
 
-    pub const RAYS: HeatScale = HeatScale {
-        title: "rays per path",
-        limits: [1.0, 32.0],
-        is_logarithmic: true,
-        marks: &[(1.0, "1"), (2.0, "2"), (4.0, "4"), (8.0, "8"), (16.0, "16"), (32.0, "32")],
-    };
+    pub const RAYS: HeatScale = HeatScale { title: "rays per path", limits: [1.0, 32.0], parts: 5 };
 
-    pub const OCCUPANCY: HeatScale = HeatScale {
-        title: "share of lanes in use",
-        limits: [0.0, 1.0],
-        is_logarithmic: false,
-        marks: &[(0.0, "0 %"), (0.25, "25"), (0.5, "50"), (0.75, "75"), (1.0, "100 %")],
-    };
+    pub const OCCUPANCY: HeatScale =
+        HeatScale { title: "share of lanes in use", limits: [0.0, 1.0], parts: 4 };
 
     /// Luminance, from `2^low` to `2^high`.
     pub fn luminance([low, high]: [f64; 2]) -> HeatScale {
-        HeatScale {
-            title: "luminance, linear",
-            limits: [low.exp2(), high.exp2()],
-            is_logarithmic: true,
-            marks: &[],
-        }
+        HeatScale { title: "luminance, linear", limits: [low.exp2(), high.exp2()], parts: 4 }
     }
 
     /// Values with labels for a legend, evenly spaced from end to end.
     pub fn marks(&self) -> Vec<(f64, String)> {
-        const PARTS: i32 = 4;
-        if !self.marks.is_empty() {
-            return self.marks.iter().map(|(value, name)| (*value, (*name).to_owned())).collect();
-        }
         let [low, high] = self.limits;
-        let value = |part: i32| low * (high / low).powf(f64::from(part) / f64::from(PARTS));
-        (0..=PARTS).map(value).map(|value| (value, short(value))).collect()
+        let value = |part: u8| match f64::from(part) / f64::from(self.parts) {
+            share if low == 0.0 => share * high,
+            share => low * (high / low).powf(share),
+        };
+        (0..=self.parts).map(value).map(|value| (value, short(value))).collect()
     }
 
     /// Position of a value on the scale, `0..=1`.
@@ -75,10 +54,10 @@ impl HeatScale {
         let [low, high] = self.limits;
         if value <= low {
             0.0
-        } else if self.is_logarithmic {
-            ((value / low).ln() / (high / low).ln()).min(1.0)
+        } else if low == 0.0 {
+            (value / high).min(1.0)
         } else {
-            ((value - low) / (high - low)).min(1.0)
+            ((value / low).ln() / (high / low).ln()).min(1.0)
         }
     }
 

@@ -3,9 +3,7 @@
 use super::common::{RECIPE, description, noisy_film, same_recipe_text};
 use std::ops::Range;
 use std::path::Path;
-use weekender::film::{
-    CheckpointError, Description, Film, FilmError, FilmSum, MergeError, checkpoint, key, merge_files,
-};
+use weekender::film::{CheckpointError, Description, Film, FilmError, FilmSum, checkpoint, key, merge_files};
 
 #[test]
 fn merged_films_have_rejected_the_samples_of_both() {
@@ -60,8 +58,10 @@ fn merged_files_are_the_film_of_one_run() {
     let overlapping = directory.path().join("overlapping.exr");
     checkpoint::save(&overlapping, &noisy_film(5, 3, 2, &[100..101, 10..20]), &description()).unwrap();
     let error = merge_files(&[&paths[0], &paths[1], &overlapping], same_recipe_text).unwrap_err();
-    let (first, other) = (paths[1].clone(), overlapping);
-    assert_eq!(error, MergeError::Overlap { first, other, range: 10..12 });
+    let words = error.to_string();
+    for part in ["9.exr", "overlapping.exr", "10..12"] {
+        assert!(words.contains(part), "{words}");
+    }
 
     // Different jobs, different sizes, no files.
     let stranger = directory.path().join("stranger.exr");
@@ -74,8 +74,8 @@ fn merged_files_are_the_film_of_one_run() {
     assert_eq!(trusting.description.get(key::SAMPLES), Some("5"), "with a gap");
     checkpoint::save(&stranger, &noisy_film(3, 5, 2, &[50..51]), &description()).unwrap();
     let error = merge_files(&[&paths[0], &stranger], same_recipe_text).unwrap_err();
-    assert!(matches!(error, MergeError::Film { reason: FilmError::Size { .. }, .. }));
-    assert_eq!(merge_files::<&Path>(&[], same_recipe_text), Err(MergeError::NoFiles));
+    assert!(matches!(error.downcast_ref(), Some(FilmError::Size { .. })), "{error:#}");
+    assert!(merge_files::<&Path>(&[], same_recipe_text).is_err());
 }
 
 /// A sum that leaves one of them out would be too short.
@@ -107,7 +107,7 @@ fn damaged_film_leaves_the_sum_unchanged() {
     let mut sum = FilmSum::new(3, 400, 2, description(), Path::new("plan")).unwrap();
     sum.add(&path("a.exr"), same_recipe_text).unwrap();
     let refused = sum.add(&path("b.exr"), same_recipe_text).unwrap_err();
-    assert!(matches!(refused, MergeError::File(CheckpointError::Damaged { .. })), "{refused}");
+    assert!(matches!(refused.downcast_ref(), Some(CheckpointError::Damaged { .. })), "{refused}");
     assert!(sum.film() == &noisy_film(3, 400, 2, &[0..2]));
     std::fs::write(path("b.exr"), whole).unwrap();
     assert_eq!(sum.add(&path("b.exr"), same_recipe_text).unwrap().to_string(), "2..4");

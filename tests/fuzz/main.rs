@@ -12,9 +12,8 @@ use proptest::sample::{Index, select};
 use proptest::test_runner::TestRunner;
 use std::ffi::OsString;
 use std::io::Cursor;
-use std::path::Path;
 use weekender::film::{Checksum, FilmFile, checkpoint};
-use weekender::job::output::{Encoding, decode_description, decode_picture};
+use weekender::job::output::{Encoding, decode_picture, read_description};
 use weekender::job::recipe::file;
 use weekender::stages::Transfer;
 
@@ -149,11 +148,11 @@ fn scene(input: &[u8]) -> usize {
 }
 
 fn film(input: &[u8]) -> usize {
-    let read = checkpoint::read(Cursor::new(input), input.len() as u64, Path::new("a.exr"));
-    let Ok(FilmFile { film, description }) = read else { return 0 };
-    assert!(film.error().is_none_or(|error| error.rmse.is_finite()));
     let directory = tempfile::tempdir().unwrap();
-    let copy = directory.path().join("a.exr");
+    let [path, copy] = ["a.exr", "b.exr"].map(|name| directory.path().join(name));
+    std::fs::write(&path, input).unwrap();
+    let Ok(FilmFile { film, description }) = checkpoint::load(&path) else { return 0 };
+    assert!(film.error().is_none_or(|error| error.rmse.is_finite()));
     checkpoint::save(&copy, &film, &description).unwrap();
     assert_eq!(checkpoint::load(&copy).unwrap(), FilmFile { film, description });
     1 << 20
@@ -171,8 +170,10 @@ fn picture(input: &[u8]) -> usize {
 }
 
 fn description(input: &[u8]) -> usize {
-    let read = decode_description(Cursor::new(input), Path::new("a"));
-    let Ok(description) = read else { return 0 };
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("a");
+    std::fs::write(&path, input).unwrap();
+    let Ok(description) = read_description(&path) else { return 0 };
     if names_large_field(description.recipe()) {
         return 0;
     }

@@ -73,7 +73,7 @@ fn misplaced_and_foreign_parts_are_named() {
     let (checked, _) = ends(at, 1, &["merge", "p", "--check"]);
     for words in [
         "part-1.exr holds the samples 0..2, but this part has 2..4",
-        "part-2.exr is the film of another picture: seed is 0 here, 9 there",
+        "part-2.exr is the film of another picture than p/plan.json: seed is 0 here, 9 there",
         "2 of 4 parts are whole",
         "--array=1,2 ",
     ] {
@@ -107,7 +107,7 @@ fn films_without_a_plan_are_added_or_refused() {
     damage(&at.join("f.exr"));
     for (films, words) in [
         (["a.exr", "d.exr"], "a.exr and d.exr both hold the samples 6..8"),
-        (["a.exr", "e.exr"], "a.exr and e.exr are films of different jobs: seed is 0 here, 1 there"),
+        (["a.exr", "e.exr"], "e.exr is the film of another picture than a.exr: seed is 0 here, 1 there"),
         (["a.exr", "f.exr"], "f.exr is damaged"),
         (["a.exr", "./a.exr"], "./a.exr is named twice; name it once"),
     ] {

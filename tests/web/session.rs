@@ -1,7 +1,6 @@
 //! What a change by the reader starts again, run by node without a browser.
 
 use std::process::Command;
-use weekender::page::web;
 
 #[test]
 fn a_change_starts_the_film_again_only_if_it_must() {

@@ -8,7 +8,7 @@ use super::{
     VERSION,
 };
 use crate::system::files::{self, InputError};
-use exr::block::reader::Reader;
+use exr::meta::Headers;
 use exr::meta::header::Header;
 use exr::prelude::{AttributeValue, MetaData};
 use std::fmt::Display;
@@ -35,7 +35,7 @@ pub struct FilmHead {
 /// [`CheckpointError`]; each message says what to do.
 pub fn read_head(path: &Path) -> Result<FilmHead, CheckpointError> {
     let (file, length) = files::open(path)?;
-    Ok(Opened::new(BufReader::new(file), length, path)?.0.about)
+    Ok(Opened::new(BufReader::new(file), length, path)?.about)
 }
 
 /// A film file whose head has been read and checked.
@@ -49,17 +49,12 @@ pub(super) struct Opened<'a> {
 
 impl<'a> Opened<'a> {
     /// Opens a film of `length` bytes. Messages name `path`.
-    pub fn new<R: Read + Seek>(
-        mut reader: R,
-        length: u64,
-        path: &'a Path,
-    ) -> Result<(Self, Reader<R>), CheckpointError> {
-        check_magic(&mut reader, path)?;
-        let reader = Reader::read_from_buffered(reader, true).map_err(|error| damaged(path, error))?;
+    pub fn new(reader: impl Read + Seek, length: u64, path: &'a Path) -> Result<Self, CheckpointError> {
+        let headers = read_headers(reader, path)?;
         let not_film = || CheckpointError::NotFilm { path: path.to_owned() };
-        let [header] = reader.headers() else { return Err(not_film()) };
+        let [header] = headers.as_slice() else { return Err(not_film()) };
         let opened = Self::with(header, length, path).map_err(|error| resaved_or(error, header))?;
-        Ok((opened.ok_or_else(not_film)?, reader))
+        opened.ok_or_else(not_film)
     }
 
     fn with(header: &Header, length: u64, path: &'a Path) -> Result<Option<Self>, CheckpointError> {
@@ -84,12 +79,11 @@ impl<'a> Opened<'a> {
 /// # Errors
 /// [`CheckpointError`]; each message says what to do.
 pub(crate) fn read_description(
-    mut reader: impl Read + Seek,
+    reader: impl Read + Seek,
     path: &Path,
 ) -> Result<Option<Description>, CheckpointError> {
-    check_magic(&mut reader, path)?;
-    let meta = MetaData::read_from_buffered(reader, true).map_err(|error| damaged(path, error))?;
-    let [header] = meta.headers.as_slice() else { return Ok(None) };
+    let headers = read_headers(reader, path)?;
+    let [header] = headers.as_slice() else { return Ok(None) };
     match read_texts(header, path).map_err(|error| resaved_or(error, header)) {
         Err(CheckpointError::Resaved { .. }) => Ok(None),
         texts => Ok(texts?.map(|(_, description)| description)),
@@ -110,14 +104,15 @@ pub(super) fn damaged(path: &Path, what: impl Display) -> CheckpointError {
     CheckpointError::Damaged { path: path.to_owned(), what: what.to_string() }
 }
 
-fn check_magic(reader: &mut (impl Read + Seek), path: &Path) -> Result<(), CheckpointError> {
+fn read_headers(mut reader: impl Read + Seek, path: &Path) -> Result<Headers, CheckpointError> {
     let unreadable = |error: std::io::Error| InputError::unreadable(path, error);
     let mut magic = Vec::new();
     reader.by_ref().take(MAGIC.len() as u64).read_to_end(&mut magic).map_err(unreadable)?;
     if magic != MAGIC {
         return Err(CheckpointError::NotExr { path: path.to_owned() });
     }
-    Ok(reader.rewind().map_err(unreadable)?)
+    reader.rewind().map_err(unreadable)?;
+    Ok(MetaData::read_from_buffered(reader, true).map_err(|error| damaged(path, error))?.headers)
 }
 
 /// The film's head and the picture's description, which match their checksum; `None` if the file has no film.

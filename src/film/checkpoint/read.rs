@@ -21,44 +21,20 @@ const BUFFER: usize = 1 << 18;
 /// [`CheckpointError`]; each message says what to do.
 pub fn load(path: &Path) -> Result<FilmFile, CheckpointError> {
     let (file, length) = files::open(path)?;
-    let (opened, _) = Opened::new(At::start(&file), length, path)?;
-    let mut halves = opened.halves()?;
+    let opened = Opened::new(At::start(&file), length, path)?;
+    let FilmHead { width, height, .. } = opened.about;
+    let no_film = |error| match error {
+        FilmError::Memory(reason) => CheckpointError::Memory { path: path.to_owned(), reason },
+        other => damaged(path, other),
+    };
+    let mut halves = Film::try_new(width, height, opened.about.halves).map_err(no_film)?.halves;
     opened.read_all(&file, &mut halves).map_err(|error| resaved_or(error, &opened.header))?;
-    opened.film(halves)
-}
-
-/// Reads from a reader of `length` bytes, without threads. Messages name `path`.
-///
-/// # Errors
-/// As [`load`].
-pub fn read(reader: impl Read + Seek, length: u64, path: &Path) -> Result<FilmFile, CheckpointError> {
-    let (opened, reader) = Opened::new(reader, length, path)?;
-    let mut halves = opened.halves()?;
-    let bands = 0..band_count(opened.about.height);
-    opened.read_bands(reader, bands, halves.iter_mut().map(Vec::as_mut_slice).collect())?;
-    opened.film(halves)
+    let FilmHead { samples, rejected, description, .. } = opened.about;
+    let film = Film::from_parts(width, height, halves, samples, rejected).map_err(no_film)?;
+    Ok(FilmFile { film, description })
 }
 
 impl Opened<'_> {
-    /// Empty sums of the film's shape.
-    fn halves(&self) -> Result<Vec<Vec<PixelSum>>, CheckpointError> {
-        let film = Film::try_new(self.about.width, self.about.height, self.about.halves);
-        film.map(|film| film.halves).map_err(|error| self.no_film(error))
-    }
-
-    fn film(self, halves: Vec<Vec<PixelSum>>) -> Result<FilmFile, CheckpointError> {
-        let FilmHead { width, height, samples, rejected, .. } = &self.about;
-        let film = Film::from_parts(*width, *height, halves, samples.clone(), *rejected);
-        Ok(FilmFile { film: film.map_err(|error| self.no_film(error))?, description: self.about.description })
-    }
-
-    fn no_film(&self, error: FilmError) -> CheckpointError {
-        match error {
-            FilmError::Memory(reason) => CheckpointError::Memory { path: self.path.to_owned(), reason },
-            other => damaged(self.path, other),
-        }
-    }
-
     /// Reads all bands with several threads.
     fn read_all(&self, file: &File, halves: &mut [Vec<PixelSum>]) -> Result<(), CheckpointError> {
         let bands = band_count(self.about.height);
@@ -85,9 +61,9 @@ impl Opened<'_> {
     }
 
     /// Reads some bands in order and checks each. `sums` are their places in each half.
-    fn read_bands<R: Read + Seek>(
+    fn read_bands(
         &self,
-        reader: Reader<R>,
+        reader: Reader<BufReader<At>>,
         bands: Range<u32>,
         mut sums: Vec<&mut [PixelSum]>,
     ) -> Result<(), CheckpointError> {
@@ -179,7 +155,7 @@ mod tests {
             save(path, &film, &Description::new("r")).unwrap();
         }
         let (file, length) = files::open(&path).unwrap();
-        let (opened, _) = Opened::new(At::start(&file), length, &path).unwrap();
+        let opened = Opened::new(At::start(&file), length, &path).unwrap();
         opened.read_all(&file, &mut []).unwrap();
         std::fs::copy(&other, &path).unwrap();
         let changed = opened.read_all(&file, &mut []).unwrap_err();

@@ -1,8 +1,8 @@
 //! OpenEXR as any program writes it.
 
-use super::read::{ReadPicture, Values, check_memory, pixel_count};
+use super::read::{ReadPicture, Values, check_memory, note_on_alpha, pixel_count};
 use crate::film::checkpoint;
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Result, anyhow, bail};
 use exr::error::Error;
 use exr::image::{AnyChannels, FlatImage, FlatSamples, Layer as Part};
 use exr::prelude::{MetaData, ReadChannels, ReadLayers, Vec2, read as reading};
@@ -46,9 +46,7 @@ pub(super) fn read(mut reader: impl BufRead + Seek, length: u64, layer: Option<&
         notes.push(format!("it has other layers, which are ignored: {}", names(&layers)));
     }
     let translucent = alpha.map_or(0, |alpha| alpha.values_as_f32().filter(|alpha| *alpha != 1.0).count());
-    if translucent > 0 {
-        notes.push(format!("{translucent} of its pixels have an alpha other than 1, which is ignored"));
-    }
+    notes.extend(note_on_alpha(translucent));
     let window = image.attributes.display_window;
     let Vec2(columns, rows) = part.size;
     let Vec2(left, top) = part.attributes.layer_position - window.position;
@@ -95,36 +93,31 @@ fn layers(image: &FlatImage) -> Vec<Layer<'_>> {
                 (false, true) => own.clone(),
                 _ => group,
             };
-            match (r, g, b, y) {
-                (Some(r), Some(g), Some(b), _) => {
-                    colour.push(Layer { part, name, channels: [r, g, b], alpha });
-                }
-                (_, _, _, Some(y)) => grey.push(Layer { part, name, channels: [y; 3], alpha }),
-                _ => {}
-            }
+            let (layers, channels) = match (r, g, b, y) {
+                (Some(r), Some(g), Some(b), _) => (&mut colour, [r, g, b]),
+                (_, _, _, Some(y)) => (&mut grey, [y; 3]),
+                _ => continue,
+            };
+            layers.push(Layer { part, name, channels, alpha });
         }
     }
     if colour.is_empty() { grey } else { colour }
 }
 
 fn choose<'a>(layers: &'a [Layer], image: &FlatImage, name: Option<&str>) -> Result<&'a Layer<'a>> {
-    if let Some(name) = name {
-        let found = layers.iter().find(|layer| layer.name == name);
-        return found.with_context(|| {
-            format!("it has no layer {name:?}; choose one of {} after FILE:", names(layers))
-        });
+    if layers.is_empty() {
+        let channels = image.layer_data.iter().flat_map(|part| &part.channel_data.list);
+        let channels: Vec<String> = channels.map(|channel| channel.name.to_string()).collect();
+        bail!(
+            "it has no channels R, G and B, nor Y, but {}; save the picture with these names",
+            channels.join(", ")
+        )
     }
-    let usual: Vec<&Layer> = layers.iter().filter(|layer| layer.name.is_empty()).collect();
-    match (layers, usual.as_slice()) {
-        ([only], _) => Ok(only),
-        (_, [usual]) => Ok(usual),
-        ([], _) => {
-            let channels = image.layer_data.iter().flat_map(|part| &part.channel_data.list);
-            let channels: Vec<String> = channels.map(|channel| channel.name.to_string()).collect();
-            bail!(
-                "it has no channels R, G and B, nor Y, but {}; save the picture with these names",
-                channels.join(", ")
-            )
+    let mut found = layers.iter().filter(|layer| layer.name == name.unwrap_or_default());
+    match (layers, name, found.next(), found.next()) {
+        ([only], None, ..) | (_, _, Some(only), None) => Ok(only),
+        (_, Some(name), ..) => {
+            bail!("it has no single layer {name:?}; choose one of {} after FILE:", names(layers))
         }
         _ => bail!("it has several layers; choose one as FILE:LAYER: {}", names(layers)),
     }
@@ -138,13 +131,11 @@ fn names(layers: &[Layer]) -> String {
 /// A note if the colours of a picture are not those of sRGB.
 fn note_on_colours(image: &FlatImage) -> Option<String> {
     let space = image.attributes.chromaticities.as_ref()?;
-    let found = [space.red, space.green, space.blue, space.white];
+    let found = [space.red, space.green, space.blue, space.white].map(|Vec2(x, y)| [x, y]);
     let usual = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]];
-    let is_near = |(found, usual): (&Vec2<f32>, [f32; 2])| {
-        (found.x() - usual[0]).abs() < 2e-3 && (found.y() - usual[1]).abs() < 2e-3
-    };
-    let Vec2(x, y) = space.red;
-    (!found.iter().zip(usual).all(is_near)).then(|| {
+    let is_near = |(found, usual): (&f32, &f32)| (found - usual).abs() < 2e-3;
+    let [x, y] = found[0];
+    (!found.as_flattened().iter().zip(usual.as_flattened()).all(is_near)).then(|| {
         format!(
             "its colours are not those of sRGB (its red is at {x},{y} instead of 0.64,0.33); they are not converted"
         )

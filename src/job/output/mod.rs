@@ -16,7 +16,7 @@ use crate::stages::Transfer;
 use crate::system::files::{self, ShownPath, replace_file};
 use anyhow::{Context, Result, anyhow};
 use clap::ValueEnum;
-use std::io::{self, BufRead, BufReader, Read, Seek, Write};
+use std::io::{self, BufReader, Read, Seek, Write};
 use std::path::Path;
 
 /// Longest recipe that is read from a PNG file, bytes: about two million listed spheres.
@@ -113,15 +113,7 @@ pub fn write_small_png(
 /// # Errors
 /// If the file cannot be read, is damaged, or does not say how it was made.
 pub fn read_description(path: &Path) -> Result<Description> {
-    let (file, _) = files::open(path)?;
-    decode_description(BufReader::new(file), path)
-}
-
-/// As [`read_description`], from a reader; `path` is only used in messages.
-///
-/// # Errors
-/// As for [`read_description`].
-pub fn decode_description(mut reader: impl BufRead + Seek, path: &Path) -> Result<Description> {
+    let mut reader = BufReader::new(files::open(path)?.0);
     let unreadable =
         |reason| anyhow!("cannot read {}: {reason}; check whether the file is complete", path.shown());
     let start = start_of(&mut reader)?;

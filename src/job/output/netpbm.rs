@@ -8,6 +8,7 @@ use crate::film::Film;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use std::borrow::Cow;
 use std::io::{self, Write};
+use std::ops::ControlFlow;
 
 /// Reads a picture from the bytes of a file; of several in one file, the last.
 pub(super) fn read(file: &[u8]) -> Result<ReadPicture> {
@@ -38,11 +39,11 @@ pub(super) fn read(file: &[u8]) -> Result<ReadPicture> {
     loop {
         let mut own = Vec::new();
         match read_at(&file[start..], &mut own)? {
-            Found::Another(offset) => {
+            ControlFlow::Continue(offset) => {
                 is_appended = true;
                 start += offset;
             }
-            Found::Picture(picture) => {
+            ControlFlow::Break(picture) => {
                 damages.extend(is_appended.then(|| {
                     Damage::new(
                         "the file has several pictures, one after the other; this is the last",
@@ -56,19 +57,16 @@ pub(super) fn read(file: &[u8]) -> Result<ReadPicture> {
     }
 }
 
-enum Found {
-    Picture(ReadPicture),
-    /// Where the next picture begins.
-    Another(usize),
-}
+/// The picture, or where the next one begins.
+type Found = ControlFlow<ReadPicture, usize>;
 
 fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> Result<Found> {
     let mut words = Words { file, at: 2 };
     let (format, channels) = match file[1] {
         b'2' => return text(file, "P2", 1, damages),
         b'3' => return text(file, "P3", 3, damages),
-        b'f' => return floats(words, 1).map(Found::Picture),
-        b'F' => return floats(words, 3).map(Found::Picture),
+        b'f' => return floats(words, 1).map(Found::Break),
+        b'F' => return floats(words, 3).map(Found::Break),
         b'5' => ("P5", 1),
         _ => ("P6", 3),
     };
@@ -96,7 +94,7 @@ fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> Result<Found> {
     if !rest.is_empty() {
         let blanks = rest.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
         if matches!(data, Cow::Borrowed(_)) && is_header(&rest[blanks..]) {
-            return Ok(Found::Another(file.len() - rest.len() + blanks));
+            return Ok(Found::Continue(file.len() - rest.len() + blanks));
         }
         notes.push(format!("{} bytes after the pixels are ignored", rest.len()));
     }
@@ -106,7 +104,7 @@ fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> Result<Found> {
         1 => data.iter().copied().map(i64::from).collect(),
         _ => data.as_chunks::<2>().0.iter().map(|pair| u16::from_be_bytes(*pair).into()).collect(),
     };
-    Ok(Found::Picture(integers([width, height], format, most, channels, &values, notes, damages)))
+    Ok(Found::Break(integers([width, height], format, most, channels, &values, notes, damages)))
 }
 
 /// The picture of values that may be outside of their range.
@@ -136,7 +134,7 @@ fn text(file: &[u8], format: &'static str, channels: usize, damages: &mut Vec<Da
     let (mut messages, mut lines, mut at) = (0, Vec::new(), 0);
     for line in file.split_inclusive(|byte| matches!(byte, b'\n' | b'\r')) {
         if at > 0 && is_header(line) {
-            return Ok(Found::Another(at));
+            return Ok(Found::Continue(at));
         }
         let content = if at == 0 { &line[2..] } else { line };
         at += line.len();
@@ -210,7 +208,7 @@ fn text(file: &[u8], format: &'static str, channels: usize, damages: &mut Vec<Da
     }
     check_memory(width, height, 0)?;
     let values = &values[..needed];
-    Ok(Found::Picture(integers([width, height], format, most, channels, values, Vec::new(), damages)))
+    Ok(Found::Break(integers([width, height], format, most, channels, values, Vec::new(), damages)))
 }
 
 /// Reads a PFM, whose lowest row comes first.

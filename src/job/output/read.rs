@@ -166,6 +166,12 @@ const LENGTH_LIMIT: u64 = 16 * PIXEL_LIMIT;
 /// Largest expansion of a byte: deflate expands up to 1032 times, and one bit of a palette index becomes 3 bytes.
 const LARGEST_RATIO: u64 = 1032 * 24;
 
+/// A note if some pixels are translucent.
+pub(super) fn note_on_alpha(translucent: usize) -> Option<String> {
+    let note = || format!("{translucent} of its pixels have an alpha other than 1, which is ignored");
+    (translucent > 0).then(note)
+}
+
 fn read_png(reader: impl BufRead + Seek, length: u64) -> Result<ReadPicture> {
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(8 * PIXEL_LIMIT);
@@ -180,13 +186,12 @@ fn read_png(reader: impl BufRead + Seek, length: u64) -> Result<ReadPicture> {
     );
     check_memory(width, height, 0)?;
     let image = DynamicImage::from_decoder(decoder).map_err(incomplete)?;
-    let mut notes = Vec::new();
-    if image.color().has_alpha() {
-        let translucent = image.to_rgba16().pixels().filter(|pixel| pixel.0[3] != u16::MAX).count();
-        if translucent > 0 {
-            notes.push(format!("{translucent} of its pixels have an alpha other than 1, which is ignored"));
-        }
-    }
+    let translucent = if image.color().has_alpha() {
+        image.to_rgba16().pixels().filter(|pixel| pixel.0[3] != u16::MAX).count()
+    } else {
+        0
+    };
+    let notes = note_on_alpha(translucent).into_iter().collect();
     let is_deep = image.color().bytes_per_pixel() > image.color().channel_count();
     let (most, values): (u16, Vec<u16>) = if is_deep {
         (u16::MAX, image.to_rgb16().into_raw())

@@ -5,20 +5,13 @@ use std::ops::Range;
 /// How much longer than its share the longest part may be.
 const TOLERANCE: f64 = 0.05;
 
-/// Samples divided into parts.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Division {
-    /// Parts begin and end at multiples of this power of two, except where the samples themselves do not. Such a block
-    /// of Sobol points is as even as the same number of points from the start, so a part, and any sum of parts, is as
-    /// good as the same samples of one machine.
-    pub block: u64,
-    /// The samples of each part, in order.
-    pub parts: Vec<Range<u64>>,
-}
-
-/// Divides `samples` into `parts` parts of about equal length, with the largest blocks for which no part is more than a
-/// twentieth longer than its share. `None` if there are fewer samples than parts, or no parts.
-pub fn divide(samples: Range<u64>, parts: u64) -> Option<Division> {
+/// Divides `samples` into `parts` parts of about equal length, in order. They begin and end at multiples of a power of
+/// two, the *block*, except where the samples themselves do not. Such a block of Sobol points is as even as the same
+/// number of points from the start, so a part, and any sum of parts, is as good as the same samples of one machine.
+///
+/// The block is the largest for which no part is more than a twentieth longer than its share. `None` if there are fewer
+/// samples than parts, or no parts.
+pub(super) fn divide(samples: Range<u64>, parts: u64) -> Option<(u64, Vec<Range<u64>>)> {
     let count = samples.end.checked_sub(samples.start)?;
     if parts == 0 || count < parts {
         return None;
@@ -37,7 +30,7 @@ pub fn divide(samples: Range<u64>, parts: u64) -> Option<Division> {
         };
         let parts: Vec<Range<u64>> = (0..parts).map(|part| border(part)..border(part + 1)).collect();
         let fits = parts.iter().all(|part| !part.is_empty() && part.end - part.start <= longest_allowed);
-        fits.then_some(Division { block, parts })
+        fits.then_some((block, parts))
     })
 }
 
@@ -48,19 +41,19 @@ mod tests {
 
     #[test]
     fn a_power_of_two_is_divided_into_powers_of_two() {
-        let Division { block, parts } = divide(0..4096, 32).unwrap();
+        let (block, parts) = divide(0..4096, 32).unwrap();
         assert_eq!((block, parts.len()), (128, 32));
         assert_eq!((parts[0].clone(), parts[31].clone()), (0..128, 3968..4096));
     }
 
     #[test]
     fn uneven_division_uses_smaller_blocks() {
-        let Division { block, parts } = divide(0..1000, 3).unwrap();
+        let (block, parts) = divide(0..1000, 3).unwrap();
         assert_eq!((block, parts), (16, vec![0..336, 336..672, 672..1000]));
-        let Division { block, parts } = divide(0..5, 4).unwrap();
+        let (block, parts) = divide(0..5, 4).unwrap();
         assert_eq!((block, parts), (1, vec![0..1, 1..2, 2..3, 3..5]));
         // Samples that continue an existing picture.
-        let Division { block, parts } = divide(96..4192, 4).unwrap();
+        let (block, parts) = divide(96..4192, 4).unwrap();
         assert_eq!((block, parts[1].clone()), (64, 1088..2112));
         assert_eq!((divide(0..3, 4), divide(0..3, 0)), (None, None));
     }
@@ -69,7 +62,7 @@ mod tests {
         #[test]
         fn parts_are_aligned_even_and_complete(start in 0_u64..9000, count in 1_u64..1 << 31, parts in 1_u64..1200) {
             let samples = start..start + count;
-            let Some(Division { block, parts: found }) = divide(samples.clone(), parts) else {
+            let Some((block, found)) = divide(samples.clone(), parts) else {
                 prop_assert!(count < parts);
                 return Ok(());
             };

@@ -1,7 +1,7 @@
 //! The manifest of a plan: a JSON file that names the scene, the parts and their files. With the scene file and the
 //! parts' own films it is the whole state of a plan.
 
-use super::divide;
+use super::division::divide;
 use crate::film::checkpoint::SAMPLE_VERSION;
 use crate::film::{Checksum, SOFTWARE, SampleRanges};
 use crate::job::recipe::{Recipe, file};
@@ -78,9 +78,9 @@ impl Part {
 impl Manifest {
     /// A manifest of this version, without the scene. `None` if there are fewer samples than parts, or no parts.
     pub fn new(samples: &Range<u64>, parts: u64) -> Option<Self> {
-        let division = divide(samples.clone(), parts)?;
+        let (block, ranges) = divide(samples.clone(), parts)?;
         // As many digits as the last part needs.
-        let digits = (division.parts.len() - 1).to_string().len();
+        let digits = (ranges.len() - 1).to_string().len();
         let part = |(index, range): (usize, &Range<u64>)| Part {
             file: format!("part-{index:0digits$}.exr"),
             samples: [range.start, range.end],
@@ -91,8 +91,8 @@ impl Manifest {
             program: SOFTWARE.to_owned(),
             scene_file: SCENE.to_owned(),
             samples: [samples.start, samples.end],
-            block: division.block,
-            parts: division.parts.iter().enumerate().map(part).collect(),
+            block,
+            parts: ranges.iter().enumerate().map(part).collect(),
             result: RESULT.to_owned(),
             ..Manifest::default()
         })
@@ -122,23 +122,21 @@ impl Manifest {
 
     /// Checks that it has the parts and the names that this program gives them.
     fn check(&self) -> Result<(), String> {
-        if self.plan_version != VERSION {
-            return Err(format!(
-                "it has version {}, but this program reads version {VERSION}",
-                self.plan_version
-            ));
+        let version = self.plan_version;
+        if version != VERSION {
+            return Err(format!("it has version {version}, but this program reads version {VERSION}"));
         }
         let [start, end] = self.samples;
         let made =
             (end <= SAMPLE_LIMIT).then(|| Manifest::new(&(start..end), self.parts.len() as u64)).flatten();
-        let of =
-            |plan: &Manifest| (plan.block, plan.parts.clone(), plan.scene_file.clone(), plan.result.clone());
-        match made {
-            Some(made) if of(&made) == of(self) => Ok(()),
-            _ => Err(format!(
-                "its parts are not those of the samples {start}..{end}, or its files have other names"
-            )),
-        }
+        let names = |plan: &Manifest| [plan.scene_file.clone(), plan.result.clone()];
+        let is_made = |made: &Manifest| {
+            (made.block, &made.parts, names(made)) == (self.block, &self.parts, names(self))
+        };
+        let what = "its parts are not those of the samples";
+        made.filter(is_made)
+            .map(drop)
+            .ok_or_else(|| format!("{what} {start}..{end}, or its files have other names"))
     }
 }
 
@@ -162,13 +160,7 @@ impl Plan {
     /// # Errors
     /// If there is none, it was changed, or it has another version; the message says what to do.
     pub fn load(path: &Path) -> Result<Plan> {
-        let in_directory = path.join(MANIFEST);
-        ensure!(
-            !path.is_dir() || in_directory.exists(),
-            "{} is a directory without a {MANIFEST}; a plan's directory or a file is needed",
-            path.shown()
-        );
-        let path = if path.is_dir() { in_directory } else { path.to_owned() };
+        let path = if path.is_dir() { path.join(MANIFEST) } else { path.to_owned() };
         let manifest = Manifest::read(&path)?;
         let scene = path.with_file_name(&manifest.scene_file);
         ensure!(

@@ -5,6 +5,5 @@ mod division;
 mod manifest;
 mod scripts;
 
-pub use division::{Division, divide};
 pub use manifest::{MANIFEST, Manifest, Part, Plan};
 pub use scripts::{Commands, Format, scripts};

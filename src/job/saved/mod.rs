@@ -15,7 +15,7 @@ use crate::job::recipe::{Recipe, file};
 use crate::job::render::RenderJob;
 use crate::stages::Stage;
 use crate::system::files::ShownPath;
-use anyhow::anyhow;
+use anyhow::{anyhow, ensure};
 use std::path::{Path, PathBuf};
 
 /// Why a file cannot be opened or resumed. The message names the file and says what to do.
@@ -102,10 +102,14 @@ impl Saved {
         self.description.get(key::SECONDS)?.parse().ok()
     }
 
+    fn backend(&self) -> Option<String> {
+        self.description.get(key::BACKEND).map(str::to_owned)
+    }
+
     /// The film with its tracing time and backend; `None` for a picture.
     pub fn into_film(self) -> Option<SavedFilm> {
-        let (seconds, backend) = (self.seconds(), self.description.get(key::BACKEND).map(str::to_owned));
-        self.film.map(|film| SavedFilm { film, seconds, backend })
+        let (seconds, backend) = (self.seconds(), self.backend());
+        Some(SavedFilm { film: self.film?, seconds, backend })
     }
 }
 
@@ -136,20 +140,11 @@ pub struct Opened {
 /// # Errors
 /// [`OpenError`]; a film must have the shape that its recipe describes.
 pub fn open(path: &Path) -> Result<Opened, OpenError> {
-    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
-        let recipe = file::load(path)?;
-        let job = job_of(path, &recipe)?;
-        return Ok(Opened { path: path.to_owned(), recipe, job, saved: None });
-    }
-    let saved = Saved::read(path)?;
-    let recipe = saved.recipe()?;
-    let job = job_of(path, &recipe)?;
-    if saved.film.as_ref().is_some_and(|film| !job.fits(film)) {
-        let path = path.shown();
-        let what = "is a film that does not have the size that its recipe says; render it again";
-        return Err(anyhow!("{path} {what}").into());
-    }
-    Ok(Opened { path: path.to_owned(), recipe, job, saved: Some(saved) })
+    let is_scene = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+    let saved = if is_scene { None } else { Some(Saved::read(path)?) };
+    let recipe = saved.as_ref().map_or_else(|| Ok(file::load(path)?), Saved::recipe)?;
+    let job = job_of(path, &recipe, saved.as_ref().and_then(|saved| saved.film.as_ref()))?;
+    Ok(Opened { path: path.to_owned(), recipe, job, saved })
 }
 
 /// Opens a film and returns its job and the film.
@@ -157,12 +152,11 @@ pub fn open(path: &Path) -> Result<Opened, OpenError> {
 /// # Errors
 /// [`OpenError`]; pictures and scene files are refused.
 pub fn open_film(path: &Path) -> Result<(RenderJob, SavedFilm), OpenError> {
-    checkpoint::read_head(path).map_err(OpenError::Film)?;
-    let Opened { job, saved, .. } = open(path)?;
-    saved.and_then(Saved::into_film).map(|film| (job, film)).ok_or_else(|| {
-        let reason = checkpoint::load(path).err();
-        OpenError::Film(reason.unwrap_or_else(|| CheckpointError::NotFilm { path: path.to_owned() }))
-    })
+    let FilmFile { film, description } = checkpoint::load(path).map_err(OpenError::Film)?;
+    let saved = Saved { path: path.to_owned(), description, film: None };
+    let job = job_of(path, &saved.recipe()?, Some(&film))?;
+    let (seconds, backend) = (saved.seconds(), saved.backend());
+    Ok((job, SavedFilm { film, seconds, backend }))
 }
 
 /// Reads the film of `job` in order to resume it.
@@ -180,13 +174,21 @@ pub fn resume(path: &Path, job: &RenderJob) -> Result<SavedFilm, OpenError> {
 /// # Errors
 /// Those of [`resume`].
 pub fn check_resume(path: &Path, job: &RenderJob) -> Result<(), OpenError> {
-    let theirs = job_of(path, &Saved::describe(path)?.recipe()?)?;
+    let theirs = job_of(path, &Saved::describe(path)?.recipe()?, None)?;
     check_same(path, job, &theirs)
 }
 
-fn job_of(path: &Path, recipe: &Recipe) -> Result<RenderJob, OpenError> {
+/// The job of a file's recipe, which must have the shape of its film.
+fn job_of(path: &Path, recipe: &Recipe, film: Option<&Film>) -> anyhow::Result<RenderJob> {
     let path = path.shown();
-    Ok(recipe.job().map_err(|reason| anyhow!("{path} has a recipe that cannot be rendered: {reason}"))?)
+    let job =
+        recipe.job().map_err(|reason| anyhow!("{path} has a recipe that cannot be rendered: {reason}"))?;
+    let is_its_size = film.is_none_or(|film| job.fits(film));
+    ensure!(
+        is_its_size,
+        "{path} is a film that does not have the size that its recipe says; render it again"
+    );
+    Ok(job)
 }
 
 fn check_same(path: &Path, mine: &RenderJob, theirs: &RenderJob) -> Result<(), OpenError> {

@@ -36,29 +36,36 @@ impl Replaced {
 
     /// A warning that `--out` replaces the file at `path`, unless it is a film of this picture whose samples `are_kept`.
     pub fn warning(&self, path: &Path, are_kept: impl FnOnce(&SampleRanges) -> bool) -> Option<String> {
-        let what = match self {
-            Replaced::Nothing => return None,
-            Replaced::Same(samples) if are_kept(samples) => return None,
-            Replaced::Same(samples) => {
-                format!("holds {} of this picture ({samples})", per_pixel(samples.count()))
-            }
-            Replaced::Other(what) => what.clone(),
-        };
-        Some(format!("--out replaces {}, which {what}; to keep it, name another file", path.shown()))
+        if matches!(self, Replaced::Same(samples) if are_kept(samples)) {
+            return None;
+        }
+        Some(format!(
+            "--out replaces {}, which {}; to keep it, name another file",
+            path.shown(),
+            self.what()?
+        ))
     }
 
     /// Why `--checkpoint` must not be the file at `path`, and what to do; `None` if nothing would be lost.
     pub fn refusal(&self, path: &Path) -> Option<String> {
-        const REMEDY: &str = "name another file for --checkpoint, or move this one away";
-        let path = path.shown();
+        let (path, what) = (path.shown(), self.what()?);
+        let go_on = match self {
+            Replaced::Same(_) => format!("go on with them (--checkpoint {path} --continue), or "),
+            _ => String::new(),
+        };
+        Some(format!(
+            "{path} is there already and {what}; {go_on}name another file for --checkpoint, or move this one away"
+        ))
+    }
+
+    /// What would be lost.
+    fn what(&self) -> Option<String> {
         match self {
             Replaced::Nothing => None,
-            Replaced::Same(samples) => Some(format!(
-                "{path} already holds {} of this picture ({samples}); go on with them (--checkpoint {path} \
-                 --continue), or {REMEDY}",
-                per_pixel(samples.count())
-            )),
-            Replaced::Other(what) => Some(format!("{path} is there already and {what}; {REMEDY}")),
+            Replaced::Same(samples) => {
+                Some(format!("holds {} of this picture ({samples})", per_pixel(samples.count())))
+            }
+            Replaced::Other(what) => Some(what.clone()),
         }
     }
 }

@@ -21,11 +21,10 @@ pub fn rescue(
     film: &Film,
     description: &Description,
 ) -> Result<PathBuf, String> {
-    if let Some(state) = state_directory() {
-        // If this fails, writing the file will report it.
-        let _ = std::fs::create_dir_all(state);
-    }
-    let others = [Some(env::temp_dir()), state_directory(), home_directory()];
+    let state = state_directory();
+    // If this fails, writing the file will report it.
+    let _ = state.as_ref().map(std::fs::create_dir_all);
+    let others = [Some(env::temp_dir()), state, home_directory()];
     let places: Vec<PathBuf> = first.iter().cloned().chain(others.into_iter().flatten()).collect();
     keep_in(&places, name, film, description)
 }
@@ -36,9 +35,20 @@ fn keep_in(
     film: &Film,
     description: &Description,
 ) -> Result<PathBuf, String> {
+    let name: String = plain_name(name).chars().take(NAME_LENGTH).collect();
+    let save_in = |directory: &Path| -> io::Result<PathBuf> {
+        let prefix = format!("weekender-{name}-");
+        let file = tempfile::Builder::new().prefix(&prefix).suffix(".exr").tempfile_in(directory)?;
+        let mut writer = BufWriter::new(file.as_file());
+        checkpoint::write(film, None, description, &mut writer)?;
+        writer.flush()?;
+        drop(writer);
+        file.as_file().sync_data()?;
+        Ok(file.into_temp_path().keep()?)
+    };
     let mut reasons = Vec::new();
     for place in places {
-        match save_in(place, name, film, description) {
+        match save_in(place) {
             Ok(path) => return Ok(path),
             Err(error) => reasons.push(format!("{} ({error})", place.shown())),
         }
@@ -50,18 +60,6 @@ fn keep_in(
         film.sample_count(),
         reasons.join(", ")
     ))
-}
-
-fn save_in(directory: &Path, picture: &str, film: &Film, description: &Description) -> io::Result<PathBuf> {
-    let picture: String = plain_name(picture).chars().take(NAME_LENGTH).collect();
-    let prefix = format!("weekender-{picture}-");
-    let file = tempfile::Builder::new().prefix(&prefix).suffix(".exr").tempfile_in(directory)?;
-    let mut writer = BufWriter::new(file.as_file());
-    checkpoint::write(film, None, description, &mut writer)?;
-    writer.flush()?;
-    drop(writer);
-    file.as_file().sync_data()?;
-    Ok(file.into_temp_path().keep()?)
 }
 
 #[cfg(test)]

@@ -35,7 +35,10 @@ fn chart(scene: &str, curves: &[CurveSummary], target: f64) -> LineChart {
     // The slope of independent samples, from the upper left corner down to the edge of the chart.
     let end = times[1].min(times[0] * (errors[1] / bottom).powi(2));
     let at = |time: f64| errors[1] * (times[0] / time).sqrt();
-    let guide = |name: &str, ends: [(f64, f64); 2]| Series::new(name, Look::Guide, ends);
+    let guide = |name: &str, ends: [(f64, f64); 2]| {
+        let points = ends.map(|(x, y)| Point { x, y, spread: None }).to_vec();
+        Series { name: name.to_owned(), points, look: Look::Guide }
+    };
     let mut series = vec![guide("", [(times[0], at(times[0])), (end, at(end))])];
     if target > bottom && target < errors[1] {
         series.push(guide(&format!("target: {target}"), [(times[0], target), (times[1], target)]));
@@ -44,11 +47,7 @@ fn chart(scene: &str, curves: &[CurveSummary], target: f64) -> LineChart {
         series.extend(reached.map(|at| guide("", [(at.time, target), (at.time, bottom)])));
     }
     series.extend(of_scene.iter().map(|curve| measured(curve, bottom)));
-    let axis = |label: &str, limits: [f64; 2]| {
-        // A chart without points has no limits.
-        let limits = (limits[0] > 0.0 && limits[0] < limits[1]).then_some(limits);
-        Axis { limits, ..Axis::new(label) }
-    };
+    let axis = |label: &str, limits: [f64; 2]| Axis { label: label.to_owned(), limits };
     LineChart {
         title: scene.to_owned(),
         x: axis("seconds of rendering", [0.8 * times[0], 1.25 * times[1]]),

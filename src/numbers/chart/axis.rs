@@ -8,12 +8,9 @@ use std::ops::Range;
 pub struct Axis {
     /// Quantity and unit.
     pub label: String,
-    /// Smallest and largest value; `None` fits the points.
-    pub limits: Option<[f64; 2]>,
+    /// Smallest and largest value. Without a range between them, as in a chart without points, the axis has any.
+    pub limits: [f64; 2],
 }
-
-/// Margin beyond the outermost points, as a share of the axis.
-const MARGIN: f64 = 0.04;
 
 /// Approximate number of ticks per axis.
 const TICKS: f64 = 6.0;
@@ -30,23 +27,9 @@ pub(super) struct Ruler {
 }
 
 impl Axis {
-    /// An axis fitted to the points.
-    pub fn new(label: impl Into<String>) -> Self {
-        Axis { label: label.into(), limits: None }
-    }
-
-    /// Lays the axis out for these values.
-    pub(super) fn ruler(&self, values: impl Iterator<Item = f64>) -> Ruler {
-        let ends = match self.limits {
-            Some(limits) => limits.map(position).into_iter().flatten().collect(),
-            None => values.filter_map(position).collect::<Vec<f64>>(),
-        };
-        let low = ends.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = ends.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let range = match (self.limits, low < high) {
-            (Some(_), true) => low..high,
-            (None, true) => low - MARGIN * (high - low)..high + MARGIN * (high - low),
-            _ if low.is_finite() => low - 0.5..low + 0.5,
+    pub(super) fn ruler(&self) -> Ruler {
+        let range = match self.limits.map(position) {
+            [Some(low), Some(high)] if low < high => low..high,
             _ => 0.0..1.0,
         };
         let (ticks, fine_ticks) = log_ticks(&range);

@@ -1,21 +1,12 @@
 //! Lines over two axes.
 
 use super::axis::position;
-use super::style::{FAINT_INK, FINE_GRID, FONT, GRID, GUIDE, INK, color};
+use super::svg::{Area, Drawn, FAINT_INK, FINE_GRID, FONT, GRID, GUIDE, INK, PALETTE};
 use super::{LineChart, Look, Point};
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
-
-pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart) -> Drawn<B> {
-    let points = || chart.series.iter().flat_map(|series| &series.points);
-    let x = chart.x.ruler(points().map(|point| point.x));
-    let y = chart
-        .y
-        .ruler(points().flat_map(|point| [point.y].into_iter().chain(point.spread.into_iter().flatten())));
-
+pub fn draw(area: &Area, chart: &LineChart) -> Drawn {
     let mut builder = ChartBuilder::on(area);
     let measured = chart.series.iter().filter(|series| series.look == Look::Measured);
     let longest = measured.map(|series| series.name.chars().count()).max().unwrap_or(0);
@@ -24,7 +15,7 @@ pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart) 
     if !chart.title.is_empty() {
         builder.caption(&chart.title, (FONT, 17, &INK));
     }
-    let mut context = builder.build_cartesian_2d(x, y)?;
+    let mut context = builder.build_cartesian_2d(chart.x.ruler(), chart.y.ruler())?;
     context
         .configure_mesh()
         .bold_line_style(GRID.stroke_width(1))
@@ -53,7 +44,7 @@ pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart) 
                 style
             }
             Look::Measured => {
-                let color = color(colors);
+                let color = PALETTE[colors % PALETTE.len()];
                 colors += 1;
                 let end = |end: usize| {
                     let at = move |point: &Point| Some((position(point.x)?, position(point.spread?[end])?));

@@ -4,14 +4,11 @@
 //! needed.
 
 mod axis;
-mod file;
 mod lines;
-mod page;
-mod style;
+mod svg;
 
 pub use axis::Axis;
-pub use file::svg;
-pub use page::{UNTITLED_TOP, page_svg};
+pub use svg::{UNTITLED_TOP, page_svg, svg};
 
 /// A picture of one or more charts.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,14 +43,6 @@ pub struct Series {
     /// In the order they are joined. Points that an axis cannot show are left out.
     pub points: Vec<Point>,
     pub look: Look,
-}
-
-impl Series {
-    /// Points without a spread.
-    pub fn new(name: impl Into<String>, look: Look, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        let points = points.into_iter().map(|(x, y)| Point { x, y, spread: None }).collect();
-        Series { name: name.into(), points, look }
-    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -17,7 +17,9 @@ pub struct PowerLaw {
     /// Standard error of the slope, from the points' distances to the line; 0 with two points.
     pub slope_deviation: f64,
     /// Standard deviation of the error's logarithm around the line; 0 with two points.
-    pub scatter: f64,
+    scatter: f64,
+    /// Sum of squares of the times' logarithms around their mean.
+    spread: f64,
 }
 
 impl PowerLaw {
@@ -27,7 +29,7 @@ impl PowerLaw {
         let count = points.len() as f64;
         let mean = |of: fn((f64, f64)) -> f64| logs().map(of).sum::<f64>() / count;
         let (mean_log_time, mean_log_error) = (mean(|p| p.0), mean(|p| p.1));
-        let spread = spread_of_times(points);
+        let spread: f64 = logs().map(|(t, _)| (t - mean_log_time).powi(2)).sum();
         let both: f64 = logs().map(|(t, e)| (t - mean_log_time) * (e - mean_log_error)).sum();
         if points.len() < 2 || spread.is_nan() || spread <= 0.0 {
             return None;
@@ -36,15 +38,8 @@ impl PowerLaw {
         let squares: f64 =
             logs().map(|(t, e)| (e - mean_log_error - slope * (t - mean_log_time)).powi(2)).sum();
         let scatter = if points.len() > 2 { (squares / (count - 2.0)).sqrt() } else { 0.0 };
-        Some(PowerLaw { slope, slope_deviation: scatter / spread.sqrt(), scatter })
+        Some(PowerLaw { slope, slope_deviation: scatter / spread.sqrt(), scatter, spread })
     }
-}
-
-/// Sum of squares of the times' logarithms around their mean.
-fn spread_of_times(points: &[Point]) -> f64 {
-    let logs = || points.iter().map(|point| point.time.ln());
-    let mean = logs().sum::<f64>() / points.len() as f64;
-    logs().map(|log| (log - mean).powi(2)).sum()
 }
 
 /// When a target is reached.
@@ -114,7 +109,7 @@ pub fn predict(history: &[Point], now: Point, target: f64) -> Option<Prediction>
     let (mut slope, mut slope_deviation, mut scatter) = (SLOPES[0], PRIOR_SLOPE_DEVIATION, LEAST_SCATTER);
     if let Some(law) = PowerLaw::through(tail).filter(|_| tail.len() > 2) {
         scatter = law.scatter.max(LEAST_SCATTER);
-        let (prior, measured) = (PRIOR_SLOPE_DEVIATION.powi(-2), spread_of_times(tail) / scatter.powi(2));
+        let (prior, measured) = (PRIOR_SLOPE_DEVIATION.powi(-2), law.spread / scatter.powi(2));
         slope = (slope * prior + law.slope * measured) / (prior + measured);
         slope_deviation = (prior + measured).sqrt().recip();
     }

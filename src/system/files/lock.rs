@@ -2,19 +2,16 @@
 
 use super::leftovers::{LOCK, PREFIX};
 use super::paths::{ShownPath, resolved};
-use super::replace::is_busy;
+use super::replace::patiently;
 use same_file::Handle;
 use std::ffi::OsString;
-use std::fs::{self, File, OpenOptions, TryLockError};
+use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// How long a run waits for another that is about to end.
 const PATIENCE: Duration = Duration::from_secs(1);
-
-/// Pause between attempts.
-const PAUSE: Duration = Duration::from_millis(5);
 
 /// Another run is writing the file.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
@@ -82,27 +79,12 @@ impl Drop for FileLock {
 /// [`ErrorKind::WouldBlock`] if another program has held the lock for all of `patience`; other errors if the file cannot
 /// be created or locked.
 pub fn lock_path(path: &Path, patience: Duration) -> io::Result<File> {
-    let begin = Instant::now();
-    loop {
-        let file = match OpenOptions::new().write(true).create(true).truncate(false).open(path) {
-            // Windows refuses to open a file that its last owner has deleted but not closed yet.
-            Err(error) if cfg!(windows) && is_busy(&error) && begin.elapsed() < patience => {
-                std::thread::sleep(PAUSE);
-                continue;
-            }
-            opened => opened?,
-        };
-        match file.try_lock() {
-            Ok(()) if is_at(&file, path)? => return Ok(file),
-            // Its last owner has just removed it.
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) if begin.elapsed() >= patience => {
-                return Err(ErrorKind::WouldBlock.into());
-            }
-            Err(TryLockError::WouldBlock) => std::thread::sleep(PAUSE),
-            Err(TryLockError::Error(error)) => return Err(error),
-        }
-    }
+    patiently(patience, || {
+        let file = OpenOptions::new().write(true).create(true).truncate(false).open(path)?;
+        file.try_lock()?;
+        // Its last owner may have just removed it.
+        if is_at(&file, path)? { Ok(file) } else { Err(ErrorKind::WouldBlock.into()) }
+    })
 }
 
 fn is_at(file: &File, path: &Path) -> io::Result<bool> {

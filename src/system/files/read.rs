@@ -3,6 +3,8 @@
 use super::paths::{STANDARD, ShownPath};
 use super::replace::is_pipe;
 use crate::system::memory::words;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::fmt::Display;
 use std::fs::{self, File};
 use std::io::{self, IsTerminal, Read, Seek};
@@ -47,33 +49,32 @@ pub fn open(path: &Path) -> Result<(File, u64), InputError> {
 const PIPE_LIMIT: u64 = 16 << 30;
 
 /// The content of pipes, in files without names: each can be read only once, but may be needed several times.
-static COPIED: Mutex<Vec<(PathBuf, File)>> = Mutex::new(Vec::new());
+static COPIED: Mutex<BTreeMap<PathBuf, File>> = Mutex::new(BTreeMap::new());
 
 fn copied(path: &Path) -> io::Result<File> {
     let mut all = COPIED.lock().unwrap_or_else(PoisonError::into_inner);
-    let known = all.iter().position(|(pipe, _)| pipe == path);
-    let index = known.map_or_else(
-        || {
-            let mut copy = tempfile::tempfile()?;
-            let mut source: Box<dyn Read> = if path == Path::new(STANDARD) {
-                if io::stdin().is_terminal() {
-                    return Err(io::Error::other("it is a terminal, but a file is needed"));
-                }
-                Box::new(io::stdin())
-            } else {
-                Box::new(File::open(path)?)
-            };
-            if io::copy(&mut source.by_ref().take(PIPE_LIMIT), &mut copy)? == PIPE_LIMIT {
-                return Err(io::Error::other(format!("more than {} come through it", words(PIPE_LIMIT))));
-            }
-            all.push((path.to_owned(), copy));
-            Ok(all.len() - 1)
-        },
-        Ok,
-    )?;
-    let mut file = all[index].1.try_clone()?;
+    let copy = match all.entry(path.to_owned()) {
+        Entry::Occupied(known) => known.into_mut(),
+        Entry::Vacant(new) => new.insert(copy_of(path)?),
+    };
+    let mut file = copy.try_clone()?;
     file.rewind()?;
     Ok(file)
+}
+
+fn copy_of(path: &Path) -> io::Result<File> {
+    let mut copy = tempfile::tempfile()?;
+    let length = if path != Path::new(STANDARD) {
+        io::copy(&mut File::open(path)?.take(PIPE_LIMIT), &mut copy)?
+    } else if io::stdin().is_terminal() {
+        return Err(io::Error::other("it is a terminal, but a file is needed"));
+    } else {
+        io::copy(&mut io::stdin().take(PIPE_LIMIT), &mut copy)?
+    };
+    if length == PIPE_LIMIT {
+        return Err(io::Error::other(format!("more than {} come through it", words(PIPE_LIMIT))));
+    }
+    Ok(copy)
 }
 
 /// Reads a file of at most `limit` bytes. `what` names the expected kind, such as "a scene file".

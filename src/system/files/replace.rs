@@ -11,6 +11,9 @@ use tempfile::NamedTempFile;
 /// How long to wait for another program to close the file that is to be replaced. Some open each new file for a moment.
 const PATIENCE: Duration = Duration::from_secs(1);
 
+/// Pause between attempts.
+const PAUSE: Duration = Duration::from_millis(5);
+
 /// A failed write. The previous file is unchanged.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot write {}: {reason}; {}", path.shown(), remedy(reason))]
@@ -64,12 +67,11 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), WriteError> {
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     let check = || match Target::find(path)? {
         // Opening a pipe would wait for its reader, and closing it would end the reader's input.
-        Target::StandardOutput | Target::Device { is_pipe: true, .. } => Ok(()),
-        Target::Device { path, .. } => OpenOptions::new().write(true).open(path).map(drop),
+        Target::StandardOutput | Target::Device => Ok(()),
         Target::File { path, directory, old } => {
             leftovers::remove_from(&directory);
             new_file_in(&directory, old.as_ref())?.close()?;
-            if old.is_some() { patiently(|| can_be_replaced(&path)) } else { Ok(()) }
+            if old.is_some() { once_closed(|| can_be_replaced(&path)) } else { Ok(()) }
         }
     };
     check().map_err(|reason| WriteError { path: path.to_owned(), reason })
@@ -90,7 +92,7 @@ pub fn check_replaceable(path: &Path) -> Result<(), WriteError> {
 enum Target {
     StandardOutput,
     File { path: PathBuf, directory: PathBuf, old: Option<Metadata> },
-    Device { path: PathBuf, is_pipe: bool },
+    Device,
 }
 
 impl Target {
@@ -103,9 +105,7 @@ impl Target {
         }
         let old = match fs::metadata(named) {
             Ok(found) if found.is_dir() => return Err(ErrorKind::IsADirectory.into()),
-            Ok(found) if !found.is_file() => {
-                return Ok(Target::Device { path: named.to_owned(), is_pipe: is_pipe(&found) });
-            }
+            Ok(found) if !found.is_file() => return Ok(Target::Device),
             // A rename would replace a read-only file anyway, but the user marked it to prevent that.
             Ok(found) if found.permissions().readonly() => {
                 return Err(io::Error::new(ErrorKind::PermissionDenied, "the file is marked read-only"));
@@ -122,16 +122,13 @@ impl Target {
             return Err(io::Error::new(ErrorKind::InvalidFilename, "its end stands for a directory"));
         }
         let path = resolved(named)?;
-        let directory = match path.parent() {
-            Some(parent) if parent.as_os_str().is_empty() => PathBuf::from("."),
-            Some(parent) if path.file_name().is_some() => parent.to_owned(),
-            _ => return Err(ErrorKind::InvalidFilename.into()),
+        let (Some(directory), Some(_)) = (path.parent(), path.file_name()) else {
+            return Err(ErrorKind::InvalidFilename.into());
         };
-        match fs::metadata(&directory) {
-            Ok(found) if found.is_dir() => Ok(Target::File { path, directory, old }),
-            Ok(_) => Err(ErrorKind::NotADirectory.into()),
-            Err(error) => Err(error),
+        if !fs::metadata(directory)?.is_dir() {
+            return Err(ErrorKind::NotADirectory.into());
         }
+        Ok(Target::File { directory: directory.to_owned(), path, old })
     }
 }
 
@@ -155,26 +152,31 @@ fn is_device(path: &Path) -> bool {
     matches!(whole.components().next(), Some(Component::Prefix(prefix)) if matches!(prefix.kind(), Prefix::DeviceNS(_)))
 }
 
-/// Whether Windows refuses because a program has opened the file without sharing it, or it is about to be deleted.
-pub(super) fn is_busy(error: &io::Error) -> bool {
+/// Whether the file is locked or, on Windows, a program has opened it without sharing it, or it is about to be deleted.
+fn is_busy(error: &io::Error) -> bool {
     const SHARING_VIOLATION: i32 = 32;
-    error.kind() == ErrorKind::PermissionDenied || error.raw_os_error() == Some(SHARING_VIOLATION)
+    let is_of_windows =
+        error.kind() == ErrorKind::PermissionDenied || error.raw_os_error() == Some(SHARING_VIOLATION);
+    error.kind() == ErrorKind::WouldBlock || cfg!(windows) && is_of_windows
 }
 
-/// Tries until the file is no longer busy. Only on Windows can a file be busy.
-fn patiently(mut attempt: impl FnMut() -> io::Result<()>) -> io::Result<()> {
+/// Tries until the file is no longer busy, or for as long as `patience`.
+pub(super) fn patiently<T>(patience: Duration, mut attempt: impl FnMut() -> io::Result<T>) -> io::Result<T> {
     let begin = Instant::now();
     loop {
         match attempt() {
-            Err(error) if cfg!(windows) && is_busy(&error) => {
-                if begin.elapsed() >= PATIENCE {
-                    return Err(io::Error::new(ErrorKind::ResourceBusy, "another program has opened it"));
-                }
-                std::thread::sleep(PATIENCE / 50);
-            }
+            Err(error) if is_busy(&error) && begin.elapsed() < patience => std::thread::sleep(PAUSE),
             outcome => return outcome,
         }
     }
+}
+
+/// Waits for another program to close the file that is to be replaced.
+fn once_closed(attempt: impl FnMut() -> io::Result<()>) -> io::Result<()> {
+    patiently(PATIENCE, attempt).map_err(|error| match is_busy(&error) {
+        true => io::Error::new(ErrorKind::ResourceBusy, "another program has opened it"),
+        false => error,
+    })
 }
 
 /// On Windows, what another program has opened can be replaced only if that program allows it.
@@ -222,14 +224,14 @@ fn try_write(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Resul
             file.rewind()?;
             io::copy(&mut file, &mut io::stdout().lock()).map(drop)
         }
-        Target::Device { path, .. } => fill(&OpenOptions::new().write(true).open(path)?),
+        Target::Device => fill(&OpenOptions::new().write(true).open(path)?),
         Target::File { path, directory, old } => {
             let new = new_file_in(&directory, old.as_ref())?;
             fill(new.as_file())?;
             // Without this, the file could be empty after a crash that follows the rename.
             new.as_file().sync_data()?;
             let mut new = Some(new);
-            patiently(|| match new.take().map(|new| new.persist(&path)) {
+            once_closed(|| match new.take().map(|new| new.persist(&path)) {
                 Some(Err(refused)) => {
                     new = Some(refused.file);
                     Err(refused.error)

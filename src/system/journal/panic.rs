@@ -64,7 +64,11 @@ fn report(version: &str, command: &str, message: &str, log: &str) -> String {
 
 /// The panic hook. It cannot fail, even if standard error is closed.
 fn note(panic: &PanicHookInfo<'_>) {
-    let message = fault_message(panic);
+    let reason = panic.payload_as_str().unwrap_or("no reason given");
+    let place = panic.location().map_or_else(String::new, |place| format!(" ({place})"));
+    let thread = std::thread::current();
+    let thread = thread.name().unwrap_or("(unnamed)");
+    let message = format!("internal error in thread {thread}: {reason}{place}");
     log::error!("{message}");
     console::note(&format!("{message}; please report it with the command that led to it"));
     let backtrace = Backtrace::capture();
@@ -74,13 +78,6 @@ fn note(panic: &PanicHookInfo<'_>) {
         whole.push_str(&format!("\n\n{backtrace}"));
     }
     *LATEST.lock().unwrap_or_else(PoisonError::into_inner) = Some(whole);
-}
-
-fn fault_message(panic: &PanicHookInfo<'_>) -> String {
-    let reason = panic.payload_as_str().unwrap_or("no reason given");
-    let place = panic.location().map_or_else(String::new, |place| format!(" ({place})"));
-    let thread = std::thread::current();
-    format!("internal error in thread {}: {reason}{place}", thread.name().unwrap_or("(unnamed)"))
 }
 
 #[cfg(test)]

@@ -64,7 +64,7 @@ pub fn parse(text: &str, name: &str) -> anyhow::Result<Recipe> {
         }
         error_at(text, name, place, &reason)
     })?;
-    recipe_of(raw, name).map_err(|refusal| error_at(text, name, refusal.place.start, &refusal.reason))
+    recipe_of(raw, name).map_err(|(place, reason)| error_at(text, name, place.start, &reason))
 }
 
 /// Whether the line at `place` has a comma between two digits and is no list.
@@ -109,25 +109,6 @@ struct RawFile {
     rules: Rules,
 }
 
-/// Exactly three numbers; glam would ignore a fourth.
-#[derive(Deserialize)]
-#[serde(try_from = "Vec<f64>")]
-struct Triple(DVec3);
-
-impl TryFrom<Vec<f64>> for Triple {
-    type Error = String;
-
-    fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
-        match numbers[..] {
-            [x, y, z] => Ok(Triple(DVec3::new(x, y, z))),
-            _ => Err(format!(
-                "expected three numbers with points, such as [0.0, 1.5, 0.0], but found {}",
-                numbers.len()
-            )),
-        }
-    }
-}
-
 /// A whole number from `LOWEST` to `HIGHEST`.
 #[derive(Deserialize)]
 #[serde(try_from = "i64")]
@@ -147,14 +128,15 @@ type Size = Option<Whole<1, { SIZE_LIMIT as i64 }>>;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
 struct RawSky {
-    bottom: Option<Triple>,
-    top: Option<Triple>,
+    // Not vectors of glam, which would ignore a fourth number.
+    bottom: Option<[f64; 3]>,
+    top: Option<[f64; 3]>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
 struct RawSphere {
-    center: Triple,
+    center: [f64; 3],
     radius: f64,
     /// The name of a material, or the table of one.
     material: toml::Value,
@@ -166,9 +148,9 @@ struct RawSphere {
 #[serde(deny_unknown_fields, expecting = "a table")]
 struct RawCamera {
     frame: Option<Whole<0, { FRAME_LIMIT as i64 - 1 }>>,
-    look_from: Option<Triple>,
-    look_at: Option<Triple>,
-    vup: Option<Triple>,
+    look_from: Option<[f64; 3]>,
+    look_at: Option<[f64; 3]>,
+    vup: Option<[f64; 3]>,
     vfov_degrees: Option<f64>,
     defocus_angle_degrees: Option<f64>,
     focus_distance: Option<f64>,
@@ -186,14 +168,11 @@ struct RawSettings {
     estimate_error: Option<bool>,
 }
 
-/// Why no picture can be made, and where in the text.
-struct Refusal {
-    place: Range<usize>,
-    reason: String,
-}
+/// Where in the text something is wrong, and what.
+type Refusal = (Range<usize>, String);
 
 fn refuse(place: Range<usize>, reason: impl Display) -> Refusal {
-    Refusal { place, reason: reason.to_string() }
+    (place, reason.to_string())
 }
 
 /// Checks every value here, where its position in the text is known.
@@ -251,8 +230,8 @@ fn sky_of(raw: Option<Spanned<RawSky>>) -> Result<Sky, Refusal> {
     let mut sky = Sky::default();
     if let Some(raw) = raw {
         let RawSky { bottom, top } = raw.get_ref();
-        sky.bottom = bottom.as_ref().map_or(sky.bottom, |Triple(colour)| *colour);
-        sky.top = top.as_ref().map_or(sky.top, |Triple(colour)| *colour);
+        sky.bottom = bottom.map_or(sky.bottom, DVec3::from);
+        sky.top = top.map_or(sky.top, DVec3::from);
         sky.validate().map_err(|error| refuse(raw.span(), error))?;
     }
     Ok(sky)
@@ -277,10 +256,10 @@ fn listed_scene(
     scene.spheres.reserve_exact(spheres.len());
     for (index, sphere) in spheres.into_iter().enumerate() {
         let place = sphere.span();
-        let RawSphere { center: Triple(center), radius, material } = sphere.into_inner();
+        let RawSphere { center, radius, material } = sphere.into_inner();
         let material = material_of(material, index, &mut scene, &mut index_of)
-            .map_err(|reason| Refusal { place: place.clone(), reason })?;
-        scene.add_sphere(center, radius, material);
+            .map_err(|reason| refuse(place.clone(), reason))?;
+        scene.add_sphere(center.into(), radius, material);
         let validated = scene.spheres[index].validate(index, scene.materials.len());
         validated.map_err(|error| refuse(place, error))?;
     }
@@ -322,21 +301,22 @@ fn material_of(
 /// The camera. `base` has the values of missing keys; without it, some must be there.
 fn camera_of(raw: &Spanned<RawCamera>, base: Option<&Camera>) -> Result<Camera, Refusal> {
     let (place, raw) = (raw.span(), raw.get_ref());
-    let required = [
-        ("look_from", raw.look_from.is_some()),
-        ("look_at", raw.look_at.is_some()),
-        ("vfov_degrees", raw.vfov_degrees.is_some()),
-    ];
-    let missing = required.into_iter().find(|(_, is_given)| !is_given && base.is_none());
-    if let Some((key, _)) = missing {
+    let missing = match raw {
+        _ if base.is_some() => None,
+        RawCamera { look_from: None, .. } => Some("look_from"),
+        RawCamera { look_at: None, .. } => Some("look_at"),
+        RawCamera { vfov_degrees: None, .. } => Some("vfov_degrees"),
+        _ => None,
+    };
+    if let Some(key) = missing {
         return Err(refuse(place, format!("missing key `{key}`")));
     }
     let base = base.unwrap_or(&Camera::BOOK);
-    let vector = |own: &Option<Triple>, base: DVec3| own.as_ref().map_or(base, |Triple(vector)| *vector);
+    let vector = |own: Option<[f64; 3]>, base: DVec3| own.map_or(base, DVec3::from);
     let camera = Camera {
-        look_from: vector(&raw.look_from, base.look_from),
-        look_at: vector(&raw.look_at, base.look_at),
-        vup: vector(&raw.vup, base.vup),
+        look_from: vector(raw.look_from, base.look_from),
+        look_at: vector(raw.look_at, base.look_at),
+        vup: vector(raw.vup, base.vup),
         vfov_degrees: raw.vfov_degrees.unwrap_or(base.vfov_degrees),
         defocus_angle_degrees: raw.defocus_angle_degrees.unwrap_or(base.defocus_angle_degrees),
         focus_distance: raw.focus_distance,
