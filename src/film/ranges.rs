@@ -29,16 +29,23 @@ impl SampleRanges {
     fn of_sorted(ranges: impl IntoIterator<Item = Range<u64>>) -> Result<Self, FilmError> {
         let mut set = SampleRanges::default();
         for range in ranges {
-            set.count += range.end - range.start;
-            match set.ranges.last_mut() {
-                Some(last) if last.end > range.start => {
-                    return Err(FilmError::Overlap { range: range.start..range.end.min(last.end) });
-                }
-                Some(last) if last.end == range.start => last.end = range.end,
-                _ => set.ranges.push(range),
+            if let Some(last) = set.ranges.last()
+                && last.end > range.start
+            {
+                return Err(FilmError::Overlap { range: range.start..range.end.min(last.end) });
             }
+            set.push(range);
         }
         Ok(set)
+    }
+
+    /// Adds a range that begins at or after the end of the set.
+    fn push(&mut self, range: Range<u64>) {
+        self.count += range.end - range.start;
+        match self.ranges.last_mut() {
+            Some(last) if last.end == range.start => last.end = range.end,
+            _ => self.ranges.push(range),
+        }
     }
 
     pub fn count(&self) -> u64 {
@@ -76,7 +83,8 @@ impl SampleRanges {
 
     /// The first contiguous range of samples that both sets have.
     pub fn first_common(&self, other: &SampleRanges) -> Option<Range<u64>> {
-        other.ranges.iter().find_map(|range| self.overlap(range))
+        let (few, many) = if self.ranges.len() < other.ranges.len() { (self, other) } else { (other, self) };
+        few.ranges.iter().find_map(|range| many.overlap(range))
     }
 
     /// Adds a range; adjacent ranges are joined.
@@ -85,8 +93,14 @@ impl SampleRanges {
     /// [`FilmError::Overlap`] if part of it is already in the set, [`FilmError::Range`] if it reaches beyond
     /// [`SAMPLE_LIMIT`]. Nothing is added then.
     pub fn insert(&mut self, range: Range<u64>) -> Result<(), FilmError> {
-        if !range.is_empty() {
-            *self = self.union(&SampleRanges::from_ranges([range])?)?;
+        if range.is_empty() {
+            return Ok(());
+        }
+        let added = SampleRanges::from_ranges([range])?;
+        // Most ranges come in order.
+        match added.ranges.as_slice() {
+            [range] if self.end() <= range.start => self.push(range.clone()),
+            _ => *self = self.union(&added)?,
         }
         Ok(())
     }

@@ -8,7 +8,7 @@ use super::{
     VERSION,
 };
 use crate::system::files::{self, InputError};
-use exr::meta::Headers;
+use exr::block::reader::Reader;
 use exr::meta::header::Header;
 use exr::prelude::{AttributeValue, MetaData};
 use std::fmt::Display;
@@ -49,10 +49,11 @@ pub(super) struct Opened<'a> {
 
 impl<'a> Opened<'a> {
     /// Opens a film of `length` bytes. Messages name `path`.
-    pub fn new(reader: impl Read + Seek, length: u64, path: &'a Path) -> Result<Self, CheckpointError> {
-        let headers = read_headers(reader, path)?;
+    pub fn new(mut reader: impl Read + Seek, length: u64, path: &'a Path) -> Result<Self, CheckpointError> {
+        check_magic(&mut reader, path)?;
+        let reader = Reader::read_from_buffered(reader, true).map_err(|error| damaged(path, error))?;
         let not_film = || CheckpointError::NotFilm { path: path.to_owned() };
-        let [header] = headers.as_slice() else { return Err(not_film()) };
+        let [header] = reader.headers() else { return Err(not_film()) };
         let opened = Self::with(header, length, path).map_err(|error| resaved_or(error, header))?;
         opened.ok_or_else(not_film)
     }
@@ -79,11 +80,12 @@ impl<'a> Opened<'a> {
 /// # Errors
 /// [`CheckpointError`]; each message says what to do.
 pub(crate) fn read_description(
-    reader: impl Read + Seek,
+    mut reader: impl Read + Seek,
     path: &Path,
 ) -> Result<Option<Description>, CheckpointError> {
-    let headers = read_headers(reader, path)?;
-    let [header] = headers.as_slice() else { return Ok(None) };
+    check_magic(&mut reader, path)?;
+    let meta = MetaData::read_from_buffered(reader, true).map_err(|error| damaged(path, error))?;
+    let [header] = meta.headers.as_slice() else { return Ok(None) };
     match read_texts(header, path).map_err(|error| resaved_or(error, header)) {
         Err(CheckpointError::Resaved { .. }) => Ok(None),
         texts => Ok(texts?.map(|(_, description)| description)),
@@ -104,15 +106,14 @@ pub(super) fn damaged(path: &Path, what: impl Display) -> CheckpointError {
     CheckpointError::Damaged { path: path.to_owned(), what: what.to_string() }
 }
 
-fn read_headers(mut reader: impl Read + Seek, path: &Path) -> Result<Headers, CheckpointError> {
+fn check_magic(reader: &mut (impl Read + Seek), path: &Path) -> Result<(), CheckpointError> {
     let unreadable = |error: std::io::Error| InputError::unreadable(path, error);
     let mut magic = Vec::new();
     reader.by_ref().take(MAGIC.len() as u64).read_to_end(&mut magic).map_err(unreadable)?;
     if magic != MAGIC {
         return Err(CheckpointError::NotExr { path: path.to_owned() });
     }
-    reader.rewind().map_err(unreadable)?;
-    Ok(MetaData::read_from_buffered(reader, true).map_err(|error| damaged(path, error))?.headers)
+    Ok(reader.rewind().map_err(unreadable)?)
 }
 
 /// The film's head and the picture's description, which match their checksum; `None` if the file has no film.

@@ -117,7 +117,7 @@ fn choose<'a>(layers: &'a [Layer], image: &FlatImage, name: Option<&str>) -> Res
     match (layers, name, found.next(), found.next()) {
         ([only], None, ..) | (_, _, Some(only), None) => Ok(only),
         (_, Some(name), ..) => {
-            bail!("it has no single layer {name:?}; choose one of {} after FILE:", names(layers))
+            bail!("it has no layer {name:?}; choose one of {} after FILE:", names(layers))
         }
         _ => bail!("it has several layers; choose one as FILE:LAYER: {}", names(layers)),
     }

@@ -2,7 +2,7 @@
 
 use super::leftovers;
 use super::paths::{STANDARD, ShownPath, resolved};
-use std::fs::{self, File, Metadata, OpenOptions};
+use std::fs::{self, File, Metadata, OpenOptions, Permissions};
 use std::io::{self, BufWriter, ErrorKind, Seek, Write};
 use std::path::{Component, Path, PathBuf, Prefix};
 use std::time::{Duration, Instant};
@@ -70,8 +70,9 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
         Target::StandardOutput | Target::Device => Ok(()),
         Target::File { path, directory, old } => {
             leftovers::remove_from(&directory);
-            new_file_in(&directory, old.as_ref())?.close()?;
-            if old.is_some() { once_closed(|| can_be_replaced(&path)) } else { Ok(()) }
+            let is_there = old.is_some();
+            new_file_in(&directory, old)?.close()?;
+            if is_there { once_closed(|| can_be_replaced(&path)) } else { Ok(()) }
         }
     };
     check().map_err(|reason| WriteError { path: path.to_owned(), reason })
@@ -91,7 +92,7 @@ pub fn check_replaceable(path: &Path) -> Result<(), WriteError> {
 
 enum Target {
     StandardOutput,
-    File { path: PathBuf, directory: PathBuf, old: Option<Metadata> },
+    File { path: PathBuf, directory: PathBuf, old: Option<Permissions> },
     Device,
 }
 
@@ -110,7 +111,7 @@ impl Target {
             Ok(found) if found.permissions().readonly() => {
                 return Err(io::Error::new(ErrorKind::PermissionDenied, "the file is marked read-only"));
             }
-            Ok(found) => Some(found),
+            Ok(found) => Some(found.permissions()),
             Err(error) if error.kind() == ErrorKind::NotFound => None,
             Err(error) => return Err(error),
         };
@@ -202,10 +203,10 @@ pub(super) fn is_pipe(_: &Metadata) -> bool {
     false
 }
 
-fn new_file_in(directory: &Path, old: Option<&Metadata>) -> io::Result<NamedTempFile> {
+fn new_file_in(directory: &Path, old: Option<Permissions>) -> io::Result<NamedTempFile> {
     let file = leftovers::create_in(directory)?;
     if let Some(old) = old {
-        file.as_file().set_permissions(old.permissions())?;
+        file.as_file().set_permissions(old)?;
     }
     Ok(file)
 }
@@ -226,7 +227,7 @@ fn try_write(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Resul
         }
         Target::Device => fill(&OpenOptions::new().write(true).open(path)?),
         Target::File { path, directory, old } => {
-            let new = new_file_in(&directory, old.as_ref())?;
+            let new = new_file_in(&directory, old)?;
             fill(new.as_file())?;
             // Without this, the file could be empty after a crash that follows the rename.
             new.as_file().sync_data()?;
