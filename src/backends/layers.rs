@@ -72,13 +72,8 @@ impl LayerImage {
     /// An empty layer of the size of `job`.
     pub fn new(layer: Layer, job: &RenderJob) -> Self {
         let RenderSettings { width, height, .. } = *job.settings();
-        LayerImage {
-            layer,
-            width,
-            height,
-            samples: 0,
-            sums: vec![[0.0; 3]; width as usize * height as usize],
-        }
+        let sums = vec![[0.0; 3]; width as usize * height as usize];
+        LayerImage { layer, width, height, samples: 0, sums }
     }
 
     /// Adds the next sample of each pixel. `paths` records [`Layer::job`] in this size. Returns false if it was

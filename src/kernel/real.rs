@@ -6,7 +6,6 @@ pub trait Real: Copy + Default + Send + Sync + PartialOrd + std::fmt::Debug + 's
     fn from_f64(x: f64) -> Self;
     /// Lossless.
     fn to_f64(self) -> f64;
-    fn negated(self) -> Self;
 }
 
 impl Real for f32 {
@@ -18,10 +17,6 @@ impl Real for f32 {
     fn to_f64(self) -> f64 {
         f64::from(self)
     }
-    #[inline(always)]
-    fn negated(self) -> Self {
-        -self
-    }
 }
 
 impl Real for f64 {
@@ -32,9 +27,5 @@ impl Real for f64 {
     #[inline(always)]
     fn to_f64(self) -> f64 {
         self
-    }
-    #[inline(always)]
-    fn negated(self) -> Self {
-        -self
     }
 }

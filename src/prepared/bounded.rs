@@ -8,22 +8,20 @@ use obvhs::aabb::Aabb;
 
 /// A sphere relative to an origin, with its box widened by the rounding error of the intersection test. The box is
 /// computed on demand, because storing millions of boxes would take most of a build's time.
-pub(super) struct Bounded<'scene, 'origin> {
-    sphere: &'scene Sphere,
-    origin: &'origin DVec3,
+pub(super) struct Bounded<'a> {
+    sphere: &'a Sphere,
+    origin: &'a DVec3,
 }
 
-impl<'scene, 'origin> Bounded<'scene, 'origin> {
+impl<'a> Bounded<'a> {
     /// Wraps all `spheres`, with coordinates relative to `origin`.
-    pub(super) fn all(
+    pub(super) fn all<'scene: 'a>(
         spheres: impl IntoIterator<Item = &'scene Sphere>,
-        origin: &'origin DVec3,
+        origin: &'a DVec3,
     ) -> Vec<Self> {
         spheres.into_iter().map(|sphere| Bounded { sphere, origin }).collect()
     }
-}
 
-impl Bounded<'_, '_> {
     pub(super) fn center(&self) -> DVec3 {
         self.sphere.center - *self.origin
     }
@@ -33,7 +31,7 @@ impl Bounded<'_, '_> {
     }
 }
 
-impl Boundable for Bounded<'_, '_> {
+impl Boundable for Bounded<'_> {
     fn aabb(&self) -> Aabb {
         let (center, radius) = (self.center(), self.radius());
         let reach = radius + BOX_MARGIN * (radius + center.abs().max_element());

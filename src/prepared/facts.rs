@@ -46,14 +46,6 @@ struct ThinLayer {
     opening: f64,
 }
 
-/// A layer in which rounding is visible.
-#[derive(Clone, Copy, Debug)]
-struct Unresolved {
-    layer: ThinLayer,
-    /// The thickness that the layer would need.
-    limit: f64,
-}
-
 impl Facts {
     pub fn of(scene: &Scene) -> Self {
         let mut facts = Facts::default();
@@ -62,10 +54,8 @@ impl Facts {
         facts.covered.dedup();
         facts.layers.sort_by_key(|layer| layer.spheres);
         facts.layers.dedup();
-        let covered = std::mem::take(&mut facts.covered);
-        let is_seen = |index: &u32| covered.binary_search(index).is_err();
-        facts.layers.retain(|layer| layer.spheres.iter().all(is_seen));
-        facts.covered = covered;
+        let Facts { covered, layers } = &mut facts;
+        layers.retain(|layer| layer.spheres.iter().all(|index| covered.binary_search(index).is_err()));
         facts
     }
 
@@ -76,13 +66,12 @@ impl Facts {
 
     /// A warning about what single precision cannot represent, for coordinates relative to `origin`.
     pub fn warning(&self, job: &RenderJob, origin: DVec3) -> Option<String> {
-        let unresolved: Vec<Unresolved> =
-            self.layers.iter().filter_map(|layer| unresolved(*layer, job, origin)).collect();
-        let share = |found: &Unresolved| found.layer.thickness / found.limit;
-        let Unresolved { layer, limit } =
-            unresolved.iter().min_by(|a, b| share(a).total_cmp(&share(b))).copied()?;
+        let limits = self.layers.iter().map(|layer| (layer, needed_thickness(layer, job, origin)));
+        let unresolved = || limits.clone().filter_map(|(layer, limit)| Some((layer, limit?)));
+        let share = |(layer, limit): &(&ThinLayer, f64)| layer.thickness / limit;
+        let (layer, limit) = unresolved().min_by(|a, b| share(a).total_cmp(&share(b)))?;
         let ([a, b], thickness) = (layer.spheres, layer.thickness);
-        let others = match unresolved.len() {
+        let others = match unresolved().count() {
             1 => String::new(),
             count => format!(" ({count} such pairs in all)"),
         };
@@ -142,8 +131,8 @@ impl Facts {
     }
 }
 
-/// `None` if the layer renders correctly.
-fn unresolved(layer: ThinLayer, job: &RenderJob, origin: DVec3) -> Option<Unresolved> {
+/// The thickness that a layer would need for rounding not to be visible; `None` if it renders correctly.
+fn needed_thickness(layer: &ThinLayer, job: &RenderJob, origin: DVec3) -> Option<f64> {
     let spheres = layer.spheres.map(|index| job.scene().spheres[index as usize]);
     let limits = spheres.map(|Sphere { center, radius, .. }| {
         let coordinate = (center - origin).abs().max_element() + radius;
@@ -160,7 +149,7 @@ fn unresolved(layer: ThinLayer, job: &RenderJob, origin: DVec3) -> Option<Unreso
     let ratio = if spheres.iter().any(has_inside) { TRAPPING_CLOSING_RATIO } else { CLOSING_RATIO };
     let is_thin = layer.thickness < limit;
     let closes = layer.opening < limit && layer.thickness < ratio * limit;
-    (is_thin || closes).then_some(Unresolved { layer, limit })
+    (is_thin || closes).then_some(limit)
 }
 
 /// How far outside a cell, in cells, a sphere may be and still form a layer with one inside.

@@ -109,7 +109,7 @@ impl<R: Real> Hierarchy<R> {
 /// Builds a tree over at least one sphere: with obvhs, unless that would take long for these spheres or give more
 /// levels than a traversal supports. Once `cancel` is set, any valid tree will do; obvhs itself cannot be interrupted.
 pub(super) fn build_tree<T>(
-    spheres: &[Bounded<'_, '_>],
+    spheres: &[Bounded<'_>],
     leaves: Leaves,
     effort: Effort,
     lay_out: impl Fn(Bvh2) -> T,

@@ -41,7 +41,7 @@ struct Open {
 }
 
 /// Whether clustering would take long: enough spheres are nested in each other, or pair one at a time.
-pub(super) fn is_crowded(spheres: &[Bounded<'_, '_>]) -> bool {
+pub(super) fn is_crowded(spheres: &[Bounded<'_>]) -> bool {
     if spheres.len() < FEW_SPHERES {
         return false;
     }
@@ -50,7 +50,7 @@ pub(super) fn is_crowded(spheres: &[Bounded<'_, '_>]) -> bool {
 }
 
 /// The spheres along a curve on which neighbours are mostly neighbours in space.
-fn along_a_curve(spheres: &[Bounded<'_, '_>]) -> Vec<u32> {
+fn along_a_curve(spheres: &[Bounded<'_>]) -> Vec<u32> {
     let lowest = spheres.par_iter().map(Bounded::center).reduce(|| DVec3::INFINITY, DVec3::min);
     let highest = spheres.par_iter().map(Bounded::center).reduce(|| DVec3::NEG_INFINITY, DVec3::max);
     let size = (highest - lowest).max_element().max(f64::MIN_POSITIVE);
@@ -63,7 +63,7 @@ fn along_a_curve(spheres: &[Bounded<'_, '_>]) -> Vec<u32> {
     order.into_iter().map(|(_, index)| index).collect()
 }
 
-fn has_nested_runs(spheres: &[Bounded<'_, '_>], order: &[u32]) -> bool {
+fn has_nested_runs(spheres: &[Bounded<'_>], order: &[u32]) -> bool {
     let (mut nested, mut run) = (0, 0);
     for pair in order.windows(2) {
         let [a, b] = [0, 1].map(|i| &spheres[pair[i] as usize]);
@@ -81,7 +81,7 @@ fn has_nested_runs(spheres: &[Bounded<'_, '_>], order: &[u32]) -> bool {
 
 /// Whether many clusters remain after [`ROUNDS`] of pairing neighbours. If sizes or distances grow along a line, each
 /// sphere is nearest to the one before it, so only one pair forms per round.
-fn pairs_slowly(spheres: &[Bounded<'_, '_>], order: &[u32]) -> bool {
+fn pairs_slowly(spheres: &[Bounded<'_>], order: &[u32]) -> bool {
     let mut clusters: Vec<Aabb> = order.par_iter().map(|index| spheres[*index as usize].aabb()).collect();
     for _ in 0..ROUNDS {
         if clusters.len() <= LEFT_ALONE {

@@ -125,7 +125,7 @@ mod tests {
     impl WideBvh {
         /// Checks what traversals rely on: each node has one parent, which comes before it; each of the `spheres` is in one
         /// leaf and inside all boxes around that leaf.
-        pub(super) fn validate(&self, spheres: &[Bounded<'_, '_>]) -> Result<(), String> {
+        pub(super) fn validate(&self, spheres: &[Bounded<'_>]) -> Result<(), String> {
             let (mut is_reached, mut is_held) = (vec![false; self.nodes.len()], vec![false; spheres.len()]);
             // Every node, with the boxes that enclose it.
             let mut open = vec![(0_u32, Vec::new())];

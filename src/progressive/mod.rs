@@ -107,21 +107,20 @@ impl Progressive {
 
     /// Starts a render and returns its last status when it is over. `look` sees every status, at least one per
     /// [`Progressive::LOOK`], and may send commands.
-    pub fn watch(&mut self, request: RenderRequest, mut look: impl FnMut(&Progressive, &Status)) -> Status {
+    pub fn watch(&mut self, request: RenderRequest, look: impl FnMut(&Progressive, &Status)) -> Status {
         self.start(request);
-        let this = &*self;
-        this.until_over(|status| look(this, status))
+        self.until_over(look)
     }
 
     /// Waits until the render is over.
     pub fn wait_until_over(&self) -> Status {
-        self.until_over(|_| ())
+        self.until_over(|_, _| ())
     }
 
-    fn until_over(&self, mut look: impl FnMut(&Status)) -> Status {
+    fn until_over(&self, mut look: impl FnMut(&Progressive, &Status)) -> Status {
         loop {
             let status = self.wait(Progressive::LOOK);
-            look(&status);
+            look(self, &status);
             if status.phase.is_over() || status.phase == Phase::Idle {
                 return status;
             }

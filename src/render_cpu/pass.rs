@@ -76,6 +76,7 @@ fn is_tried(number: usize, tile_count: usize, one_in: usize) -> bool {
 }
 
 /// The outcome of tracing a tile.
+#[derive(Default)]
 pub(super) struct TracedTile {
     pub stats: TileStats,
     /// Blocks whose sums are in the film.
@@ -162,22 +163,16 @@ impl PassTracer<'_> {
                 tile.rows.iter_mut().for_each(|row| row.fill(PixelSum::default()));
             }
             let order = orders.iter().find(|order| order.size() == tile.size()).unwrap_or(&orders[0]);
-            let mut work = Work::new(&blocks, order, tile.corner, tile.rows);
-            let expected = work.expected();
-            match pass.purpose {
-                Purpose::Add if self.is_to_panic() => work = work.sabotaged(),
-                Purpose::Add => {}
-                Purpose::TakeAway(added) => work = work.taking_away(added[index]),
-                Purpose::Try(_) => work = work.taking_away(0),
-            }
-            let (stats, took) = (TileStats::default(), Duration::ZERO);
-            let mut traced = TracedTile { stats, finished: 0, expected, panic: None, took };
-            let has_nothing_to_take_away =
-                matches!(pass.purpose, Purpose::TakeAway(added) if added[index] == 0);
-            if has_nothing_to_take_away
-                || pass.cancel.load(Ordering::Relaxed)
-                || pass.stop.leaves_out(tile_count)
-            {
+            let work = Work::new(&blocks, order, tile.corner, tile.rows);
+            let mut traced = TracedTile { expected: work.expected(), ..TracedTile::default() };
+            let mut work = match pass.purpose {
+                Purpose::Add if self.is_to_panic() => work.sabotaged(),
+                Purpose::Add => work,
+                Purpose::TakeAway(added) if added[index] == 0 => return traced,
+                Purpose::TakeAway(added) => work.taking_away(added[index]),
+                Purpose::Try(_) => work.taking_away(0),
+            };
+            if pass.cancel.load(Ordering::Relaxed) || pass.stop.leaves_out(tile_count) {
                 return traced;
             }
             let begin = Instant::now();

@@ -75,10 +75,8 @@ impl Rebuild {
         let fits = memory::check(|| "a better hierarchy".to_owned(), bytes, "").is_ok();
         // Without memory or a thread for it, the first hierarchy does.
         let thread = fits.then(|| std::thread::Builder::new().name("rebuild".to_owned()).spawn(build).ok());
-        match thread.flatten() {
-            Some(thread) => self.building = Some((job.clone(), thread)),
-            None => self.is_settled = true,
-        }
+        self.building = thread.flatten().map(|thread| (job.clone(), thread));
+        self.is_settled = self.building.is_none();
     }
 
     /// Returns the scene with the better hierarchy once, when it is built, prepared for `job`. One that was built for

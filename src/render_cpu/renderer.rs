@@ -50,9 +50,7 @@ impl CpuRenderer {
         if !isa.lane_counts().contains(&lanes) {
             return Err(CpuError::Lanes { lanes, isa, available: isa.lane_counts().to_vec() });
         }
-        let renderer = CpuRenderer::with_packets(Some((isa, lanes)), options.threads, options.low_priority)?;
-        let tiles_to_panic = options.panics_after.map(AtomicU64::new);
-        Ok(CpuRenderer { general: options.general, tiles_to_panic, ..renderer })
+        CpuRenderer::with_packets(Some((isa, lanes)), options)
     }
 
     /// Creates the reference renderer: scalar, `f64`, with `threads` threads (`None`: one per core).
@@ -60,41 +58,37 @@ impl CpuRenderer {
     /// # Errors
     /// [`CpuError::Threads`] if the threads cannot be started.
     pub fn reference(threads: Option<usize>) -> Result<Self, CpuError> {
-        CpuRenderer::with_packets(None, threads, false)
+        CpuRenderer::with_packets(None, CpuOptions { threads, ..CpuOptions::default() })
     }
 
-    fn with_packets(
-        packets: Option<(Isa, usize)>,
-        threads: Option<usize>,
-        low_priority: bool,
-    ) -> Result<Self, CpuError> {
-        let threads = threads.unwrap_or(0);
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
+    fn with_packets(packets: Option<(Isa, usize)>, options: CpuOptions) -> Result<Self, CpuError> {
+        let CpuOptions { threads, low_priority, general, panics_after, .. } = options;
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.unwrap_or(0))
             .thread_name(|index| format!("trace-{index}"))
             .start_handler(move |_| {
                 if low_priority {
                     give_way();
                 }
             })
-            .build()
-            .map(|threads| CpuRenderer {
-                packets,
-                general: false,
-                low_priority,
-                threads,
-                job: None,
-                prepared: None,
-                rebuild: Rebuild::new(),
-                occupancy: TileOccupancy::default(),
-                tiles_to_panic: None,
-                messages: Vec::new(),
-            })
-            .map_err(|error| {
-                let cores = std::thread::available_parallelism().map_or(1, usize::from);
-                let threads = if threads == 0 { cores } else { threads };
-                CpuError::Threads { threads, reason: error.to_string() }
-            })
+            .build();
+        let threads = pool.map_err(|error| {
+            let cores = std::thread::available_parallelism().map_or(1, usize::from);
+            let threads = threads.filter(|threads| *threads > 0).unwrap_or(cores);
+            CpuError::Threads { threads, reason: error.to_string() }
+        })?;
+        Ok(CpuRenderer {
+            packets,
+            general,
+            low_priority,
+            threads,
+            job: None,
+            prepared: None,
+            rebuild: Rebuild::new(),
+            occupancy: TileOccupancy::default(),
+            tiles_to_panic: panics_after.map(AtomicU64::new),
+            messages: Vec::new(),
+        })
     }
 }
 

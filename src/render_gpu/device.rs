@@ -173,14 +173,10 @@ impl Gpu {
     pub fn guarded<T>(&self, create: impl FnOnce() -> T) -> Result<T, String> {
         let filters =
             [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation];
-        let mut scopes = filters.map(|filter| Some(self.device.push_error_scope(filter)));
+        let scopes = filters.map(|filter| self.device.push_error_scope(filter));
         let made = create();
-        let mut error = None;
-        for scope in scopes.iter_mut().rev() {
-            let caught = scope.take().and_then(|scope| pollster::block_on(scope.pop()));
-            error = error.or(caught);
-        }
-        match error {
+        let errors = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop()));
+        match errors.collect::<Vec<_>>().first() {
             Some(error) => Err(error.to_string()),
             None => self.faults.check().map(|()| made),
         }
@@ -251,18 +247,10 @@ impl Gpu {
         self.silence().compiles = true;
     }
 
-    /// Waits until a submission is done.
-    ///
-    /// # Errors
-    /// The device's failure, also if it has not responded for too long.
-    pub fn wait(&self, submission: &wgpu::SubmissionIndex) -> Result<(), String> {
-        self.wait_unless(submission, None).map(drop)
-    }
-
     /// Waits until a submission is done and returns true, or returns false once `cancel` is set.
     ///
     /// # Errors
-    /// As [`Gpu::wait`].
+    /// The device's failure, also if it has not responded for too long.
     pub fn wait_unless(
         &self,
         submission: &wgpu::SubmissionIndex,

@@ -48,7 +48,8 @@ pub struct FilmBuffers {
     pub order: wgpu::Buffer,
     /// The blocks of samples of a dispatch.
     pub blocks: wgpu::Buffer,
-    counters: wgpu::Buffer,
+    /// The counters of dispatches: [`GpuCounters`].
+    pub counters: wgpu::Buffer,
     counters_staging: wgpu::Buffer,
     traced: SampleRanges,
     trace: Duration,
@@ -171,11 +172,6 @@ impl FilmBuffers {
         held
     }
 
-    /// The counters of dispatches: [`GpuCounters`].
-    pub fn counters(&self) -> &wgpu::Buffer {
-        &self.counters
-    }
-
     /// Whether samples are being transferred.
     pub fn is_leaving(&self) -> bool {
         self.leaving.is_some()
@@ -222,7 +218,7 @@ impl FilmBuffers {
     /// The device's error; the film is unchanged.
     pub fn arrive(&mut self, gpu: &Gpu, film: &mut Film) -> Result<Stats, RenderError> {
         let Some(leaving) = self.leaving.take() else { return Ok(Stats::default()) };
-        gpu.wait(&leaving.submission).map_err(failed)?;
+        gpu.wait_unless(&leaving.submission, None).map_err(failed)?;
         let counters = view(&self.counters_staging, &leaving.counters).map_err(failed)?;
         let views = self.slabs.iter().zip(&leaving.slabs).map(|(slab, mapping)| view(&slab.staging, mapping));
         let views = views.collect::<Result<Vec<_>, _>>().map_err(failed)?;

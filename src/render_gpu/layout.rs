@@ -1,24 +1,18 @@
 //! Fills the device's records, which are declared in [`crate::kernel::records`].
 
 use crate::job::render::RenderSettings;
-use crate::kernel::{AnchoredSphere, UNIFORM_ANCHORED, UNIFORM_SPHERES};
 pub use crate::kernel::{
     GpuAside, GpuBlock, GpuCounters, GpuDispatch, GpuDispatchCounters, GpuJob, WORKGROUP_SIZE,
 };
 use crate::prepared::PreparedScene;
+use std::array::from_fn;
 
 impl GpuJob {
     /// The parameters of a job whose hierarchy has `node_count` nodes.
     pub fn new(prepared: &PreparedScene<f32>, node_count: u32) -> Self {
         let RenderSettings { width, height, max_depth, seed, .. } = prepared.settings;
-        let mut few_spheres = [[0.0; 4]; UNIFORM_SPHERES];
-        for (to, from) in few_spheres.iter_mut().zip(prepared.opaque.iter().chain(&prepared.two_root)) {
-            *to = *from;
-        }
-        let mut few_anchored = [AnchoredSphere::default(); UNIFORM_ANCHORED];
-        for (to, from) in few_anchored.iter_mut().zip(&prepared.anchored) {
-            *to = *from;
-        }
+        let mut spheres = prepared.opaque.iter().chain(&prepared.two_root).copied();
+        let mut anchored = prepared.anchored.iter().copied();
         GpuJob {
             camera: prepared.camera,
             sky_middle: prepared.sky_middle,
@@ -33,8 +27,8 @@ impl GpuJob {
             height,
             tile_width: tile_size(width, height)[0],
             node_count,
-            few_spheres,
-            few_anchored,
+            few_spheres: from_fn(|_| spheres.next().unwrap_or_default()),
+            few_anchored: from_fn(|_| anchored.next().unwrap_or_default()),
         }
     }
 }

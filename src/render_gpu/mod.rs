@@ -65,14 +65,10 @@ impl GpuRenderer {
         let gpu = Gpu::open(options.adapter.as_deref(), options.allow_software, options.patience)?;
         let dispatches = Dispatches::new(&gpu, options.dispatch_target, options.turn_limit)
             .map_err(|reason| GpuError::Device { adapter: gpu.adapter.to_string(), reason })?;
-        let messages = if gpu.adapter.is_software {
-            let adapter = &gpu.adapter;
-            vec![format!(
-                "{adapter} is not a GPU: it runs on the processor and is slower than the CPU backend"
-            )]
-        } else {
-            Vec::new()
+        let software = |adapter: &AdapterInfo| {
+            format!("{adapter} is not a GPU: it runs on the processor and is slower than the CPU backend")
         };
+        let messages = gpu.adapter.is_software.then(|| software(&gpu.adapter)).into_iter().collect();
         Ok(GpuRenderer {
             gpu,
             options,
@@ -92,13 +88,14 @@ impl GpuRenderer {
 
     /// A report of what was compiled and measured so far.
     pub fn report(&self) -> GpuReport {
-        let film = self.loaded.as_ref().map(|loaded| &loaded.film);
+        let film = |loaded: &Loaded| (loaded.film.arrivals, loaded.film.arrivals_took);
+        let (films, film_time) = self.loaded.as_ref().map_or((0, Duration::ZERO), film);
         GpuReport {
             dispatches: self.dispatches.count,
             dispatch_time: self.dispatches.time,
             timer: self.dispatches.timer(),
-            films: film.map_or(0, |film| film.arrivals),
-            film_time: film.map_or(Duration::ZERO, |film| film.arrivals_took),
+            films,
+            film_time,
         }
     }
 

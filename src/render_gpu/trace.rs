@@ -1,6 +1,7 @@
 //! Tracing a range of samples: splits it into dispatches, sends for the film, and traces missing samples again.
 
 use super::dispatches::{BoundDispatch, Broken, CAUTION_LIMIT, CAUTION_SHIFT};
+use super::film_buffers::Slab;
 use super::layout::{GpuBlock, GpuDispatch, tile_size};
 use super::loaded::Loaded;
 use super::options::InjectionPoint;
@@ -31,10 +32,7 @@ impl GpuRenderer {
         let tile_pixels = u64::from(tile[0]) * u64::from(tile[1]);
         let mut stats = Stats::default();
         for slab in 0..loaded.film.slabs.len() {
-            let (first_row, row_count) = {
-                let slab = &loaded.film.slabs[slab];
-                (slab.first_row, slab.row_count)
-            };
+            let Slab { first_row, row_count, .. } = loaded.film.slabs[slab];
             let area = [settings.width, row_count];
             let most = self.dispatches.whole_samples(&loaded.features, &loaded.scene.prepared);
             let most = most.filter(|_| !loaded.features.aside).unwrap_or(u64::MAX);
@@ -77,7 +75,7 @@ impl GpuRenderer {
                         film: loaded.film.slabs[slab].group.clone(),
                         order_buffer: loaded.film.order.clone(),
                         blocks_buffer: loaded.film.blocks.clone(),
-                        counters: loaded.film.counters().clone(),
+                        counters: loaded.film.counters.clone(),
                         blocks: Arc::clone(&blocks),
                         order,
                         paths: u64::from(tile_count) * tile_pixels * samples,

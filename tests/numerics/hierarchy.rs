@@ -127,7 +127,7 @@ impl<L: Lanes> Tree<L> {
         assert_eq!(ordered.len(), listed.len(), "each sphere is in one leaf");
         let row = |(sphere, rank): (&Sphere, &u32)| {
             let [x, y, z, radius2] = packed::<L>(sphere.center, sphere.radius);
-            [x, y, z, if rank % 2 == 0 { radius2 } else { radius2.negated() }]
+            [x, y, z, if rank % 2 == 0 { radius2 } else { negated(radius2) }]
         };
         let rows = ordered.iter().zip(&hierarchy.ranks).map(row).collect();
         let mut numbers: Vec<u32> = (0..ordered.len() as u32).collect();
@@ -136,13 +136,17 @@ impl<L: Lanes> Tree<L> {
     }
 }
 
+fn negated<R: Real>(x: R) -> R {
+    R::from_f64(-x.to_f64())
+}
+
 #[inline(always)]
 fn nearest_in_list<L: Lanes>(l: L, rays: &Rays<L>, rows: &[[L::Real; 4]], numbers: &[u32]) -> Nearest<L> {
     let mut nearest = Nearest::nothing(l);
     for index in numbers {
         let ([x, y, z, radius2], number) = (rows[*index as usize], l.splat_u(*index));
         let candidate = if radius2 < L::Real::default() {
-            near_root(l, rays, &Spheres::splat(l, [x, y, z, radius2.negated()], number))
+            near_root(l, rays, &Spheres::splat(l, [x, y, z, negated(radius2)], number))
         } else {
             nearest_root(l, rays, &Spheres::splat(l, [x, y, z, radius2], number))
         };

@@ -136,8 +136,8 @@ fn scatter_path<L: Lanes, const PARTS: u32>(
     let [u0, _] = collected.draw.pair;
     let rho = (u0 * (one - u0)).sqrt();
     let rho = rho + rho;
-    // The pole is vertical, like that of the sky and of the ground, which scatters most of the light: evenly spaced numbers
-    // give evenly spaced heights.
+    // The pole is vertical, like that of the sky and of the ground, which scatters most of the light. Evenly spaced
+    // numbers then give evenly spaced heights.
     let unit = V3 { x: rho * cosine, y: one - (u0 + u0), z: rho * sine };
     let incidence = incidence_of(l, outward_cosine);
     let laws = if with_rules { features.dielectric_laws } else { DielectricLaws::Schlick };
