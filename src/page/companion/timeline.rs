@@ -94,7 +94,7 @@ mod tests {
 
     #[test]
     fn figure_states_gain_of_refill() {
-        let html = figure("three-spheres").unwrap().into_string();
+        let html = figure("three-spheres", &mut Uses::default()).unwrap().into_string();
         let steps = |after: &str| -> f64 {
             let rest = &html[html.find(after).unwrap() + after.len()..];
             rest.trim_start_matches(": ").split(' ').next().unwrap().parse().unwrap()
