@@ -139,3 +139,13 @@ fn page_is_whole_and_has_no_script() {
     }
     assert!(!page.contains("<script"));
 }
+
+#[test]
+fn a_refused_request_leaves_nothing() {
+    let at = TempDir::new().unwrap();
+    for program in ["gallery", "companion"] {
+        let output = weekender(at.path(), &[program, "--out", "g", "--adapter", "no such adapter"]).output();
+        assert_eq!(output.unwrap().status.code(), Some(2), "{program}");
+        assert!(!at.path().join("g").exists(), "{program}");
+    }
+}

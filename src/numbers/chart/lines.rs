@@ -62,8 +62,9 @@ pub fn draw(area: &Area, chart: &LineChart) -> Drawn {
         };
         ends.extend(end.map(|end| (series, end, style)));
     }
-    // The names are at the ends of the lines; those that would overlap move apart.
+    // The names stand beside the plot, where no line touches them; those that would overlap move apart.
     let (left, top) = area.get_base_pixel();
+    let column = context.plotting_area().get_pixel_range().0.end - left + 14;
     ends.sort_by_key(|(_, (_, y), _)| *y);
     let mut free = i32::MIN;
     for (series, (x, y), style) in ends {
@@ -76,9 +77,8 @@ pub fn draw(area: &Area, chart: &LineChart) -> Drawn {
         }
         let moved = y.max(free);
         free = moved + 17;
-        let at = (x + 16, moved);
-        area.draw(&PathElement::new([(x + 5, y), (at.0 - 3, at.1)], style))?;
-        area.draw_text(&series.name, &text.pos(Pos::new(HPos::Left, VPos::Center)), at)?;
+        area.draw(&PathElement::new([(x + 5, y), (column - 3, moved)], style.stroke_width(1)))?;
+        area.draw_text(&series.name, &text.pos(Pos::new(HPos::Left, VPos::Center)), (column, moved))?;
     }
     Ok(())
 }
