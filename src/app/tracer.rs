@@ -386,7 +386,7 @@ mod tests {
             tracer.want(&want, None).unwrap();
             assert_eq!(tracer.status().run, run);
             tracer.started = None;
-            assert!(!tracer.run_of(&document).is_some());
+            assert!(tracer.run_of(&document).is_none());
             tracer.want(&want, None).unwrap();
             assert_eq!((tracer.status().run, tracer.is_full(&document)), (run + 1, true), "it begins anew");
         }
@@ -420,6 +420,6 @@ mod tests {
         let reason = tracer.want(&wish(&invalid, &backend, false), None).unwrap_err();
         assert!(reason.contains("width"), "{reason}");
         assert_eq!(tracer.status().run, run);
-        assert!(tracer.run_of(&document).is_some() && !tracer.run_of(&invalid).is_some());
+        assert!(tracer.run_of(&document).is_some() && tracer.run_of(&invalid).is_none());
     }
 }
