@@ -126,13 +126,8 @@ pub struct Answer<T> {
 }
 
 impl<T> Answer<T> {
-    /// Gives the answer.
-    pub fn give(self, value: Result<T, String>) {
-        self.give_one(value);
-    }
-
-    /// Gives one of several answers.
-    pub fn give_one(&self, value: Result<T, String>) {
+    /// Gives the answer, or one of several.
+    pub fn give(&self, value: Result<T, String>) {
         self.is_promised.set(false);
         // If the window was closed, nobody receives it.
         let _ = self.sender.send(value);
@@ -157,7 +152,7 @@ impl<T> Drop for Answer<T> {
         if self.is_promised.get() {
             let reason =
                 if thread::panicking() { "the program failed" } else { "nothing has done it; try again" };
-            self.give_one(Err(reason.to_owned()));
+            self.give(Err(reason.to_owned()));
         }
         // The question is over before the window looks.
         drop(self.token.take());
@@ -179,7 +174,7 @@ mod tests {
         context.set_request_repaint_callback(move |_| _ = count.fetch_add(1, Ordering::Relaxed));
         type Action = fn(Answer<u32>);
         let actions: [(&str, Action); 2] =
-            [("given", |answer| answer.give(Ok(1))), ("one of several", |answer| answer.give_one(Ok(2)))];
+            [("given", |answer| answer.give(Ok(1))), ("one of several", |answer| answer.give(Ok(2)))];
         for (name, act) in actions {
             // A frame that asks for no other one.
             for _ in 0..4 {

@@ -106,7 +106,7 @@ impl Layers {
             trace(layer, &job, &mut recorder, &cancel, |image, divisor| {
                 let rgb8 = coloured(layer, image, job.rules().transfer);
                 let texture = Texture::new([image.width, image.height], &rgb8, None);
-                answer.give_one(Ok(Some(ShownLayer { texture, divisor, layer, image: image.clone() })));
+                answer.give(Ok(Some(ShownLayer { texture, divisor, layer, image: image.clone() })));
             })?;
             Ok(None)
         };

@@ -117,7 +117,6 @@ impl Window {
                 Some(layer) => Some((&layer.texture, layer.divisor > 1)),
                 None => shown.map(|shown| (&shown.texture, shown.divisor > 1)),
             },
-            has_film: shown.is_some(),
             titles: titles(facts, &tracing.second),
             second: tracing.second.shown(view).map(|shown| (&shown.texture, shown.divisor > 1 || is_scaled)),
             paths: &tools.paths,

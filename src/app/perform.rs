@@ -332,7 +332,7 @@ impl Window {
 
     /// Goes on with this film of the document.
     pub(super) fn adopt(&mut self, film: Film, seconds: Option<f64>) {
-        self.tracing.adopt(film, seconds);
+        (self.tracing.film, self.tracing.seconds_before) = (Some(film), seconds);
         self.changes.last = self.model.document.clone();
     }
 

@@ -131,7 +131,7 @@ fn title(ui: &mut Ui, unit: f32, facts: &Facts) {
         let place = stage.map(place).unwrap_or_default();
         ui.label(RichText::new(place).size(2.25 * unit).color(colours.weak));
     };
-    Sides::new().shrink_left().show(ui, left, right);
+    Sides::new().height(ui.available_height()).shrink_left().show(ui, left, right);
 }
 
 /// The headings and texts below the picture.

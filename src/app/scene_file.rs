@@ -35,7 +35,7 @@ impl SceneFile {
                 Ok(_) => Ok(recipe),
                 Err(error) => Err(error.to_string()),
             });
-            answer.give_one(recipe);
+            answer.give(recipe);
         };
         let look = move || look_repeatedly(&path, &needed, read);
         if let Err(error) = thread::Builder::new().name("scene file".to_owned()).spawn(look) {

@@ -13,7 +13,7 @@ use std::sync::Arc;
 #[derive(Default)]
 pub struct Second {
     /// `None` until another picture is traced.
-    tracer: Option<Tracer>,
+    pub tracer: Option<Tracer>,
     /// What was traced last.
     pub of: Option<(Other, Arc<Origin>)>,
     /// Its film when it was last read.
@@ -42,14 +42,6 @@ impl Second {
         view.compared_kept().map(|kept| &kept.means).or(self.film.as_ref())
     }
 
-    pub fn pause(&self) {
-        self.tracer.iter().for_each(|tracer| tracer.progressive.pause());
-    }
-
-    pub fn resume(&self) {
-        self.tracer.iter().for_each(|tracer| tracer.progressive.resume());
-    }
-
     /// Makes the second picture, if one is needed; `want` is what the main picture renders. Returns whether there is one.
     pub fn follow(&mut self, context: &Context, view: &ViewState, want: &Want<'_>) -> bool {
         if let Some(Ok(film)) = self.films.take() {
@@ -74,7 +66,7 @@ impl Second {
         let is_new = tracer.poll(context).is_some();
         // Both pictures have the same stop condition, so that they do not differ in their noise.
         let (stop, tone) = (document.stop, view.tone.of_picture());
-        let outcome = tracer.want(&Want { document: &document, stop, view: tone, ..*want });
+        let outcome = tracer.want(&Want { document: &document, stop, view: tone, ..*want }, None);
         let is_due = view.mode() == Some(Mode::Difference) && (is_new || self.film.is_none());
         let has_film = tracer.is_full(&document) && tracer.has_picture(&document);
         if is_due && has_film && !self.films.is_open() {

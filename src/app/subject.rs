@@ -65,7 +65,7 @@ impl<'a> Subject<'a> {
         look: impl FnOnce(&Film) -> Option<T> + Send + 'static,
     ) {
         if let Some(answer) = query.ask(context, key) {
-            self.inspect(move |film| look(film).into_iter().for_each(|found| answer.give_one(Ok(found))));
+            self.inspect(move |film| look(film).into_iter().for_each(|found| answer.give(Ok(found))));
         }
     }
 }

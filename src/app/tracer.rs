@@ -83,7 +83,7 @@ pub struct Shown {
 /// A render thread and its latest results.
 pub struct Tracer {
     pub progressive: Progressive,
-    started: Option<Started>,
+    pub started: Option<Started>,
     shown: Option<Shown>,
     status: Arc<Status>,
     asked: Instant,
@@ -178,23 +178,12 @@ impl Tracer {
         self.progressive.inspect(look);
     }
 
-    /// Discards the film; the next request starts a new one.
-    pub fn restart(&mut self) {
-        self.started = None;
-    }
-
     /// Stops rendering until the next request.
     pub fn abandon(&mut self) {
         if self.started.take().is_some() {
             self.progressive.abandon();
             self.shown = None;
         }
-    }
-
-    /// Continues a film of `document`.
-    pub fn go_on_with(&mut self, film: Film, want: &Want<'_>) -> Result<(), String> {
-        self.look(&want.view);
-        self.start(want, 1, Some(film))
     }
 
     /// Takes new results. For a new picture, returns the time at which its render began.
@@ -252,12 +241,15 @@ impl Tracer {
             && self.shown.as_ref().is_some_and(is_preview)
     }
 
-    /// Renders what is wanted, at once or after the next picture.
+    /// Renders what is wanted, at once or after the next picture; goes on with `film`, if there is one.
     ///
     /// # Errors
     /// Why the document cannot be rendered; the current render continues.
-    pub fn want(&mut self, want: &Want<'_>) -> Result<(), String> {
+    pub fn want(&mut self, want: &Want<'_>, film: Option<Film>) -> Result<(), String> {
         self.look(&want.view);
+        if film.is_some() {
+            return self.start(want, 1, film);
+        }
         let divisor = if want.is_moving {
             self.previews.follow_move(want.document)
         } else {
@@ -387,15 +379,15 @@ mod tests {
             tracer.start(&want, 2, None).unwrap();
             assert!(tracer.run_of(&document).is_some() && !tracer.is_full(&document));
             tracer.started.as_mut().unwrap().is_pictured = is_pictured;
-            tracer.want(&want).unwrap();
+            tracer.want(&want, None).unwrap();
             assert_eq!(tracer.is_full(&document), is_pictured);
             // The same again goes on.
             let run = tracer.status().run;
-            tracer.want(&want).unwrap();
+            tracer.want(&want, None).unwrap();
             assert_eq!(tracer.status().run, run);
-            tracer.restart();
-            assert!(!tracer.run_of(&document).is_some());
-            tracer.want(&want).unwrap();
+            tracer.started = None;
+            assert!(tracer.run_of(&document).is_none());
+            tracer.want(&want, None).unwrap();
             assert_eq!((tracer.status().run, tracer.is_full(&document)), (run + 1, true), "it begins anew");
         }
     }
@@ -406,11 +398,11 @@ mod tests {
         let (mut huge, document, backend) = (small("metal"), small("metal"), cpu());
         huge.give_size([16384, 16384]);
         let (mut tracer, context) = (Tracer::new().unwrap(), egui::Context::default());
-        tracer.want(&wish(&huge, &backend, false)).unwrap();
+        tracer.want(&wish(&huge, &backend, false), None).unwrap();
         std::thread::sleep(Duration::from_millis(300));
         let begin = Instant::now();
         while !tracer.has_samples(&document) {
-            tracer.want(&wish(&document, &backend, false)).unwrap();
+            tracer.want(&wish(&document, &backend, false), None).unwrap();
             tracer.poll(&context);
             assert!(begin.elapsed() < Duration::from_secs(10));
             std::thread::sleep(Duration::from_millis(2));
@@ -421,13 +413,13 @@ mod tests {
     fn what_cannot_be_rendered_is_refused_and_the_render_goes_on() {
         let (document, backend) = (small("metal"), cpu());
         let mut tracer = Tracer::new().unwrap();
-        tracer.want(&wish(&document, &backend, false)).unwrap();
+        tracer.want(&wish(&document, &backend, false), None).unwrap();
         let run = tracer.status().run;
         let mut invalid = document.clone();
         invalid.settings.width = 0;
-        let reason = tracer.want(&wish(&invalid, &backend, false)).unwrap_err();
+        let reason = tracer.want(&wish(&invalid, &backend, false), None).unwrap_err();
         assert!(reason.contains("width"), "{reason}");
         assert_eq!(tracer.status().run, run);
-        assert!(tracer.run_of(&document).is_some() && !tracer.run_of(&invalid).is_some());
+        assert!(tracer.run_of(&document).is_some() && tracer.run_of(&invalid).is_none());
     }
 }

@@ -49,37 +49,29 @@ impl Tracing {
         })
     }
 
-    /// Takes what was traced. Returns when the pictured run began, if there is a new picture.
-    pub fn poll(&mut self, context: &Context) -> Option<Instant> {
-        self.main.poll(context)
-    }
-
-    /// Goes on with this film, which is the document's.
-    pub fn adopt(&mut self, film: Film, seconds: Option<f64>) {
-        (self.film, self.seconds_before) = (Some(film), seconds);
-    }
-
     /// Tracing time of the film's samples, if known.
     pub fn seconds(&self) -> Option<f64> {
         Some(self.seconds_before? + self.main.status().trace.as_secs_f64())
     }
 
-    pub fn pause(&mut self, context: &Context) {
-        self.main.progressive.pause();
-        self.second.pause();
+    fn tracers(&self) -> impl Iterator<Item = &Tracer> {
+        std::iter::once(&self.main).chain(&self.second.tracer)
+    }
+
+    pub fn pause(&self, context: &Context) {
+        self.tracers().for_each(|tracer| tracer.progressive.pause());
         // The picture of the last samples is still to come.
         context.request_repaint_after(PICTURES_APART);
     }
 
-    pub fn resume(&mut self) {
-        self.main.progressive.resume();
-        self.second.resume();
+    pub fn resume(&self) {
+        self.tracers().for_each(|tracer| tracer.progressive.resume());
     }
 
     /// Throws the samples away and begins anew.
     pub fn restart(&mut self) {
         self.seconds_before = Some(0.0);
-        self.main.restart();
+        self.main.started = None;
     }
 
     /// Gives the document the size that fits the window, if its samples are not worth more or needed.
@@ -110,11 +102,7 @@ impl Tracing {
             is_moving: changes.is_moving(),
             is_paused: *is_paused,
         };
-        let outcome = match self.film.take() {
-            Some(film) => self.main.go_on_with(film, &want),
-            None => self.main.want(&want),
-        };
-        self.invalid = outcome.err();
+        self.invalid = self.main.want(&want, self.film.take()).err();
         self.second.follow(context, view, &want)
     }
 

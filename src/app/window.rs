@@ -173,7 +173,7 @@ impl Window {
 
     fn poll(&mut self, context: &egui::Context) {
         let begin = Instant::now();
-        let pictured = self.tracing.poll(context);
+        let pictured = self.tracing.main.poll(context);
         let shell = &mut self.shell;
         shell.frame_times.picture = begin.elapsed();
         let status = self.tracing.main.status();

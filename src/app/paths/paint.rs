@@ -53,7 +53,7 @@ impl Paths {
 }
 
 /// The end of a ray, or the point up to which it is drawn.
-pub(super) fn end_of(step: &Step) -> DVec3 {
+fn end_of(step: &Step) -> DVec3 {
     step.hit.map_or(step.origin + step.direction * SKY_LENGTH, |hit| hit.point)
 }
 

@@ -1,6 +1,5 @@
 //! A path seen from the side: from the eye, its first ray is only a point.
 
-use super::paint::end_of;
 use super::{Path, is_ground};
 use crate::app::model::Document;
 use crate::app::theme;
@@ -27,8 +26,9 @@ pub(super) fn ui(ui: &mut Ui, path: &Path, at: usize, document: &Document) {
 
     // The plane through up and the direction in which the path reaches farthest.
     let up = document.camera.vup.normalize_or(DVec3::Y);
-    let reach = path.iter().map(|(step, _)| (end_of(step) - first.origin).reject_from_normalized(up));
-    let reach = reach.max_by(|a, b| a.length().total_cmp(&b.length())).unwrap_or_default();
+    let reach = hits.iter().map(|hit| (hit.point - first.origin).reject_from_normalized(up));
+    let reach = reach.max_by(|a, b| a.length().total_cmp(&b.length()));
+    let reach = reach.unwrap_or(first.direction.reject_from_normalized(up));
     let right = reach.normalize_or(up.any_orthonormal_vector());
     let flat = |point: DVec3| DVec2::new(point.dot(right), point.dot(up));
     let bounds = |points: &[DVec3]| {
@@ -114,7 +114,7 @@ pub(super) fn ui(ui: &mut Ui, path: &Path, at: usize, document: &Document) {
         }
         plot.text(label(points[0] - DVec2::Y * 0.3 * margin, Align2::CENTER_TOP, "camera"));
         if let Some(end) = points.get(hits.len() + 1) {
-            plot.text(label(*end, Align2::RIGHT_BOTTOM, "to the sky"));
+            plot.text(label(*end, Align2::RIGHT_CENTER, "to the sky  "));
         }
     });
 }

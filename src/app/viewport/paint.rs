@@ -28,8 +28,6 @@ const CORNER: f32 = 8.0;
 pub struct Pictures<'a> {
     /// The picture or a layer of it, and whether it is always smooth: previews and pictures of another size are.
     pub main: Option<(&'a Texture, bool)>,
-    /// Whether there is a picture of the film.
-    pub has_film: bool,
     /// The picture at the other side of a wipe.
     pub second: Option<(&'a Texture, bool)>,
     /// Paths to draw over the picture.
@@ -56,7 +54,7 @@ pub(super) fn paint(
         let is_square = !is_smooth && ((times - 1.0).abs() < 1e-4 || times >= SQUARES);
         texture.id(ui.ctx(), if is_square { TextureOptions::NEAREST } else { TextureOptions::LINEAR })
     };
-    let Pictures { main, has_film, second, paths, values, titles } = pictures;
+    let Pictures { main, second, paths, values, titles } = pictures;
     // The hole is one point smaller, so that no gap stays between picture and background.
     let hole = if main.is_some() { rect.shrink(1.0).intersect(room) } else { Rect::NOTHING };
     fill_around(&painter, room, hole, theme::colours(ui).surround);
@@ -86,7 +84,7 @@ pub(super) fn paint(
         let text = format!("Exposure {:+.1}", view.tone.exposure).replace('-', "\u{2212}");
         title(ui, &painter, corners, Align2::LEFT_BOTTOM, &text);
     }
-    if !has_film {
+    if main.is_none() {
         let text = match (&facts.invalid, &facts.status.phase) {
             (Some(reason), _) | (None, Phase::Failed(reason)) => reason.as_str(),
             _ => "Starting",
