@@ -39,23 +39,23 @@ pub struct Held {
     pub before: Body,
     /// Where the drag began, in the picture.
     pub start: [f64; 2],
+    /// The offset from the pointer to the point that follows it, because a handle may be beside the outline.
+    pub offset: [f64; 2],
 }
 
 impl Held {
     /// The sphere after a drag to the point `to` of the picture. Where no place or radius follows, it is as before.
     pub fn dragged(&self, camera: &Camera, aspect: f64, to: [f64; 2]) -> Body {
         let ray = |place| camera.direction_through(place, aspect);
+        let to = [0, 1].map(|axis| to[axis] + self.offset[axis]);
         let Body { center, radius, .. } = self.before;
         let eye = camera.look_from;
         match self.grip {
             Grip::Radius => {
                 let distance = eye.distance(center);
-                // The handle may be beside the outline.
-                let [from, to] = [self.start, to].map(|place| {
-                    ray(place).angle_between(center - eye).min(std::f64::consts::FRAC_PI_2).sin()
-                });
+                let angle = ray(to).angle_between(center - eye).min(std::f64::consts::FRAC_PI_2);
                 let limits = [RADIUS_SHARE_LEAST * distance, RADIUS_SHARE_LIMIT * distance];
-                let radius = (radius * to / from.max(RADIUS_SHARE_LEAST)).clamp(limits[0], limits[1]);
+                let radius = (distance * angle.sin()).clamp(limits[0], limits[1]);
                 Body { radius, ..self.before }
             }
             Grip::Centre | Grip::Level => {
@@ -116,7 +116,7 @@ mod tests {
     };
 
     fn held(grip: Grip, start: [f64; 2]) -> Held {
-        Held { grip, sphere: 0, before: BODY, start }
+        Held { grip, sphere: 0, before: BODY, start, offset: [0.0; 2] }
     }
 
     proptest! {

@@ -72,7 +72,7 @@ impl Selection {
             painter.add(Shape::line(line.clone(), Stroke::new(4.0, Color32::from_black_alpha(150))));
             painter.add(Shape::line(line, Stroke::new(2.0, Color32::WHITE)));
         }
-        if let Some(at) = handle_at(rect, &outline) {
+        if let Some((at, _)) = handle_at(rect, &outline) {
             let pointer = ui.input(|input| input.pointer.hover_pos());
             let is_near = || pointer.is_some_and(|to| to.distance(at) < GRIP);
             let is_hot = self.0.map_or_else(is_near, |held| held.grip == Grip::Radius);
@@ -102,16 +102,16 @@ fn grasped(rect: Rect, selected: &Selected, document: &Document, at: Pos2, is_le
     let outline = outline(selected, document);
     extent(&outline)?;
     let start = place_at(rect, at);
-    let is_at_handle = handle_at(rect, &outline).is_some_and(|handle| handle.distance(at) < GRIP);
-    let is_on_it =
-        || document.pick(&document.camera, start).is_some_and(|pick| pick.sphere == selected.sphere);
-    let grip = match is_level {
-        _ if is_at_handle => Grip::Radius,
-        true => Grip::Level,
-        false => Grip::Centre,
-    };
-    let held = Held { grip, sphere: selected.sphere, before: selected.body, start };
-    (is_at_handle || is_on_it()).then_some(held)
+    let grip = if is_level { Grip::Level } else { Grip::Centre };
+    let held = Held { grip, sphere: selected.sphere, before: selected.body, start, offset: [0.0; 2] };
+    if let Some((handle, place)) = handle_at(rect, &outline)
+        && handle.distance(at) < GRIP
+    {
+        let offset = [0, 1].map(|axis| place[axis] - start[axis]);
+        return Some(Held { grip: Grip::Radius, offset, ..held });
+    }
+    let pick = document.pick(&document.camera, start);
+    pick.is_some_and(|pick| pick.sphere == selected.sphere).then_some(held)
 }
 
 /// The lower and upper corner of the outline in the picture, if the sphere is small enough to be dragged.
@@ -120,14 +120,15 @@ fn extent(outline: &Outline) -> Option<[[f64; 2]; 2]> {
     (0..2).all(|axis| high[axis] - low[axis] < LARGEST).then_some([low, high])
 }
 
-/// The handle of the radius on the screen.
-fn handle_at(rect: Rect, outline: &Outline) -> Option<Pos2> {
+/// The handle of the radius: its point on the screen, and the point of the outline that it moves.
+fn handle_at(rect: Rect, outline: &Outline) -> Option<(Pos2, [f64; 2])> {
     let [low, high] = extent(outline)?;
     let is_in_sight = |place: &[f64; 2]| place.iter().all(|along| (0.01..0.99).contains(along));
+    let place = outline.quarters().find(is_in_sight)?;
     let middle = point_at(rect, [0, 1].map(|axis| 0.5 * (low[axis] + high[axis])));
-    let at = point_at(rect, outline.quarters().find(is_in_sight)?);
+    let at = point_at(rect, place);
     let beside = (SMALL - at.distance(middle)).max(0.0);
-    Some(at + (at - middle).normalized() * beside)
+    Some((at + (at - middle).normalized() * beside, place))
 }
 
 fn cursor(grip: Grip, is_held: bool) -> CursorIcon {
