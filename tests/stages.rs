@@ -21,6 +21,8 @@ fn every_stage_can_be_rendered_shown_and_compared() {
     for stage in Stage::ALL {
         let recipe = stage.recipe();
         assert_eq!(recipe.name, stage.id);
+        let headings = [stage.section_title(), stage.chapter_title()];
+        assert!(headings.iter().all(|title| !title.is_empty()), "{}: {headings:?}", stage.id);
         recipe.job().expect(stage.id);
         assert_eq!(recipe, stage.recipe(), "{} differs from itself", stage.id);
         if let Some(pair) = stage.pair {

@@ -72,9 +72,11 @@ fn small_cases_are_right_on_every_level() {
 }
 
 #[test]
-fn every_third_small_case_is_right_on_the_gpu() {
+fn some_small_cases_are_right_on_the_gpu() {
     let Some(gpu) = gpu() else { return };
-    let wrong = wrong(suite(vec![gpu]), small_cases().step_by(3));
+    // A software adapter is slow. Ties are only tested by both orders of two copies.
+    let chosen = |(index, case): &(usize, &'static Case)| index % 3 == 0 || case.id.starts_with("copies/");
+    let wrong = wrong(suite(vec![gpu]), small_cases().enumerate().filter(chosen).map(|(_, case)| case));
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 

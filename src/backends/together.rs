@@ -130,9 +130,12 @@ impl Renderer for Together {
     /// Lists as left out what any member leaves out.
     fn kernel(&self) -> KernelInfo {
         let kernels: Vec<KernelInfo> = self.members.iter().map(|member| member.renderer.kernel()).collect();
-        let mut left_out: Vec<&str> = kernels.iter().flat_map(|kernel| &kernel.left_out).copied().collect();
-        left_out.sort_unstable();
-        left_out.dedup();
+        let mut left_out = Vec::new();
+        for name in kernels.iter().flat_map(|kernel| &kernel.left_out) {
+            if !left_out.contains(name) {
+                left_out.push(*name);
+            }
+        }
         KernelInfo {
             about: kernels.iter().map(|kernel| kernel.about.as_str()).collect::<Vec<_>>().join(" | "),
             left_out,

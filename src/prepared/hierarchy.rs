@@ -125,7 +125,13 @@ pub(super) fn build_tree<T>(
     }
     let top_down = |halved| lay_out(parted::build(spheres, leaves.most as usize, halved, cancel));
     let tree = top_down(false);
-    if fits(&tree) { tree } else { top_down(true) }
+    if fits(&tree) {
+        return tree;
+    }
+    let tree = top_down(true);
+    // Halving gives about as many levels as the number of spheres has bits.
+    assert!(fits(&tree) || cancel.load(Ordering::Relaxed), "the hierarchy has too many levels");
+    tree
 }
 
 /// Reorders nodes and spheres depth-first, so that consecutive visits are close together in memory.

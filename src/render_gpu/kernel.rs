@@ -33,7 +33,7 @@ type Key = (EntryPoint, Features, u32);
 
 type Modules = Arc<Mutex<HashMap<EntryPoint, wgpu::ShaderModule>>>;
 
-pub enum Slot {
+enum Slot {
     Compiling(Receiver<Result<Kernel, String>>, Instant),
     Done(Result<Kernel, String>),
 }
@@ -47,7 +47,11 @@ pub struct Kernels {
 
 impl Kernels {
     /// Starts compiling a kernel unless that has been done, without waiting for it.
-    pub fn begin(&mut self, gpu: &Gpu, key: Key) -> &mut Slot {
+    pub fn begin(&mut self, gpu: &Gpu, key: Key) {
+        self.slot(gpu, key);
+    }
+
+    fn slot(&mut self, gpu: &Gpu, key: Key) -> &mut Slot {
         let modules = &self.modules;
         self.slots.entry(key).or_insert_with(|| start(gpu.clone(), key, Arc::clone(modules)))
     }
@@ -58,7 +62,7 @@ impl Kernels {
     /// [`RenderError::Backend`] with the device's error. [`RenderError::Cancelled`] if the kernel is no longer wanted:
     /// it continues to compile, and the finished kernel stays in the cache.
     pub fn get(&mut self, gpu: &Gpu, key: Key, cancel: &AtomicBool) -> Result<Kernel, RenderError> {
-        self.begin(gpu, key).wait(&gpu.adapter, cancel)
+        self.slot(gpu, key).wait(&gpu.adapter, cancel)
     }
 }
 

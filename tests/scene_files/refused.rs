@@ -37,7 +37,9 @@ fn bad_spheres_materials_and_cameras_are_refused() {
         (RADIUS, "radius 1", 10, &[]),
         (RADIUS, "radius = 1,5", 10, &["write a point"]),
         (CENTER, "center = [0, nan, 0]", 8, &["spheres[0].center.y is NaN"]),
-        (CENTER, "center = [0, 0]", 9, &["length 2", "array of length 3", "spheres.center"]),
+        (CENTER, "center = [0, 0]", 9, &["three numbers", "found 2", "spheres.center"]),
+        (CENTER, "center = [0, 0, -1, 5]", 9, &["three numbers", "found 4", "spheres.center"]),
+        (CENTER, "center = [1,5, 0,5, -1]", 9, &["three numbers", "found 5", "spheres.center"]),
         (CENTER, "", 8, &["missing key `center`"]),
         (
             ALBEDO,

@@ -3,5 +3,5 @@
 mod step;
 mod timeline;
 
-pub use step::{Event, Lobe, Step, steps};
+pub use step::{Event, Lobe, Step, step, steps};
 pub use timeline::{Activity, Timeline, timeline};

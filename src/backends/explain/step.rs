@@ -1,7 +1,7 @@
 //! A path step by step: what each ray meets, and how the next ray's direction was chosen.
 
 use crate::job::render::{RenderJob, RenderSettings};
-use crate::kernel::path_record::{PathRecord, RecordedRay};
+use crate::kernel::path_record::PathRecord;
 use crate::kernel::sampling::{HalfKey, SampleBlock, stream_stride};
 use crate::render_cpu::lanes::{Scalar, Word, unit_float};
 use crate::render_cpu::rng;
@@ -76,29 +76,29 @@ pub enum Lobe {
 }
 
 /// Explains the path of sample `index` of a pixel, ray by ray. `record` must be that path of `job`.
-pub fn steps(job: &RenderJob, [x, y]: [u32; 2], index: u64, record: &PathRecord) -> Vec<Step> {
-    let step = |(bounce, ray): (usize, &RecordedRay)| {
-        let (origin, direction) = (DVec3::from(ray.origin), DVec3::from(ray.direction));
-        let hit = ray.hit.map(|hit| {
-            let sphere = job.scene().spheres[hit.sphere];
-            let point = hit.position.map_or(origin + direction * hit.distance, DVec3::from);
-            hit_of(&sphere, hit.sphere, point, direction)
-        });
-        let next = record.rays.get(bounce + 1).map(|next| DVec3::from(next.direction));
-        let event = match hit {
-            None => Event::Sky,
-            Some(hit) => event_of(
-                job,
-                &hit,
-                direction,
-                next,
-                bounce,
-                coin(job.settings(), x | y << 16, index, bounce as u32 + 1),
-            ),
-        };
-        Step { origin, direction, throughput: DVec3::from(ray.throughput), hit, event }
-    };
-    record.rays.iter().enumerate().map(step).collect()
+pub fn steps(job: &RenderJob, pixel: [u32; 2], index: u64, record: &PathRecord) -> Vec<Step> {
+    (0..record.rays.len()).filter_map(|bounce| step(job, pixel, index, record, bounce)).collect()
+}
+
+/// Explains one ray of the path, as [`steps`].
+pub fn step(
+    job: &RenderJob,
+    [x, y]: [u32; 2],
+    index: u64,
+    record: &PathRecord,
+    bounce: usize,
+) -> Option<Step> {
+    let ray = record.rays.get(bounce)?;
+    let (origin, direction) = (DVec3::from(ray.origin), DVec3::from(ray.direction));
+    let hit = ray.hit.map(|hit| {
+        let sphere = job.scene().spheres[hit.sphere];
+        let point = hit.position.map_or(origin + direction * hit.distance, DVec3::from);
+        hit_of(&sphere, hit.sphere, point, direction)
+    });
+    let next = record.rays.get(bounce + 1).map(|next| DVec3::from(next.direction));
+    let coin = coin(job.settings(), x | y << 16, index, bounce as u32 + 1);
+    let event = hit.map_or(Event::Sky, |hit| event_of(job, &hit, direction, next, bounce, coin));
+    Some(Step { origin, direction, throughput: DVec3::from(ray.throughput), hit, event })
 }
 
 /// The first number that sample `index` draws for its ray `ray`; 0 is the ray from the camera.

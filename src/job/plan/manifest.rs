@@ -160,7 +160,13 @@ impl Plan {
     /// # Errors
     /// If there is none, it was changed, or it has another version; the message says what to do.
     pub fn load(path: &Path) -> Result<Plan> {
-        let path = if path.is_dir() { path.join(MANIFEST) } else { path.to_owned() };
+        let in_directory = path.join(MANIFEST);
+        ensure!(
+            !path.is_dir() || in_directory.exists(),
+            "{} is a directory without a {MANIFEST}; a plan's directory or a file is needed",
+            path.shown()
+        );
+        let path = if path.is_dir() { in_directory } else { path.to_owned() };
         let manifest = Manifest::read(&path)?;
         let scene = path.with_file_name(&manifest.scene_file);
         ensure!(

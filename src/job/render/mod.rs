@@ -117,7 +117,12 @@ impl RenderJob {
         let film = Film::bytes(width, height, self.settings.half_count()).saturating_mul(films);
         let output = u64::from(width) * u64::from(height) * OUTPUT_BYTES_PER_PIXEL;
         let spheres = self.scene.spheres.len();
-        let remedy = "choose a smaller --size or a scene of fewer spheres, or --estimate-error off, which halves the film";
+        let remedy = match self.settings.half_count() {
+            1 => "choose a smaller --size or a scene of fewer spheres",
+            _ => {
+                "choose a smaller --size or a scene of fewer spheres, or --estimate-error off, which halves the film"
+            }
+        };
         memory::check(
             || format!("a picture of {width}x{height} of {spheres} spheres"),
             film.saturating_add(output).saturating_add(TRACING_BYTES_PER_SPHERE * spheres as u64),

@@ -77,6 +77,7 @@ fn memory_check_counts_films_file_and_spheres() {
         let error = job.check_memory(FILMS).unwrap_err();
         assert_eq!(error.needed_bytes, pixels * (24 * halves * FILMS + 4) + 3 * 400 + (64 << 20));
         assert_eq!(error.what, "a picture of 16384x16383 of 3 spheres");
+        assert_eq!(error.remedy.contains("--estimate-error off"), estimate_error, "{}", error.remedy);
     }
 }
 

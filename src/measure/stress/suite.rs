@@ -7,10 +7,13 @@ use super::report::{BookMeasured, CaseReport, Measured};
 use crate::film::Film;
 use crate::job::recipe::Recipe;
 use crate::stages::{Rules, SurfaceRule};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::{Duration, Instant};
 
-/// Time limit of one picture.
-const SECONDS_MAX: f64 = 20.0;
+/// Time limit of one picture, and how often it is looked at.
+const TIME_LIMIT: Duration = Duration::from_secs(20);
+const GLANCE: Duration = Duration::from_millis(20);
 
 /// The recipe with the book's own arithmetic.
 pub fn by_the_book(recipe: &Recipe) -> Recipe {
@@ -20,12 +23,30 @@ pub fn by_the_book(recipe: &Recipe) -> Recipe {
 /// Traces all samples of a picture. The error is a sentence: it was refused, failed, panicked or took too long.
 pub fn trace(tracer: &mut Candidate, recipe: &Recipe, interrupt: &AtomicBool) -> Result<Traced, String> {
     let job = recipe.job().map_err(|error| format!("refused: {error}"))?;
-    match tracer.trace(&job, recipe.samples_per_pixel, interrupt) {
-        Ok(Traced { seconds, .. }) if seconds > SECONDS_MAX => {
-            Err(format!("took {seconds:.0} s, more than {SECONDS_MAX} s"))
-        }
-        traced => traced.map_err(|error| format!("{error:#}")),
-    }
+    within_time(interrupt, TIME_LIMIT, |cancel| {
+        let traced = tracer.trace(&job, recipe.samples_per_pixel, cancel);
+        traced.map_err(|error| match cancel.load(Ordering::Relaxed) && !interrupt.load(Ordering::Relaxed) {
+            true => format!("took more than {} s", TIME_LIMIT.as_secs()),
+            false => format!("{error:#}"),
+        })
+    })
+}
+
+/// Runs `work` with a flag that is set when `limit` is over or when the user interrupts.
+fn within_time<T>(interrupt: &AtomicBool, limit: Duration, work: impl FnOnce(&AtomicBool) -> T) -> T {
+    let (cancel, begin) = (AtomicBool::new(false), Instant::now());
+    std::thread::scope(|scope| {
+        let (done, is_done) = channel::<()>();
+        let cancel = &cancel;
+        scope.spawn(move || {
+            while is_done.recv_timeout(GLANCE) == Err(RecvTimeoutError::Timeout) {
+                cancel.store(interrupt.load(Ordering::Relaxed) || begin.elapsed() > limit, Ordering::Relaxed);
+            }
+        });
+        // Dropped when the work ends, even by a panic.
+        let _done = done;
+        work(cancel)
+    })
 }
 
 /// The backends under test, which are compared with the last one, the `f64` reference. The first also renders the
@@ -273,5 +294,19 @@ mod tests {
         // The reference takes its place.
         let traced = trace(&mut broken, &small, &go_on).unwrap();
         assert_eq!((traced.film.sample_count(), traced.film.mean(3)), (4, [0.5; 3]));
+    }
+
+    #[test]
+    fn a_picture_ends_at_its_limit_or_when_the_user_interrupts() {
+        for (is_interrupted, limit) in [(false, Duration::ZERO), (true, TIME_LIMIT)] {
+            let was_set = within_time(&AtomicBool::new(is_interrupted), limit, |cancel| {
+                let begin = Instant::now();
+                while !cancel.load(Ordering::Relaxed) && begin.elapsed() < Duration::from_secs(10) {
+                    std::thread::sleep(Duration::from_millis(5));
+                }
+                cancel.load(Ordering::Relaxed)
+            });
+            assert!(was_set);
+        }
     }
 }

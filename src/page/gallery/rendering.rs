@@ -117,6 +117,11 @@ impl<'a> Work<'a> {
                     Ok(false) => break Ok(()),
                     Err(error) => break Err(error),
                 }
+                // Counted before, because it stays if printing fails.
+                let (stage, _) = &tasks[rendered - 1];
+                if let Err(error) = order.print(stage, &mut display) {
+                    break Err(error);
+                }
             };
             display.clear();
             outcome.map_err(|error| match rendered {
@@ -150,7 +155,7 @@ impl Order<'_> {
         Ok(tasks)
     }
 
-    /// Renders, writes and prints the still of task `number`; `false` after a signal.
+    /// Renders and writes the still of task `number`; `false` after a signal.
     fn render(
         &self,
         tasks: &[Task],
@@ -187,10 +192,12 @@ impl Order<'_> {
         description.set(key::ERROR, error.unwrap_or_else(|| NO_NOISE.to_owned()));
         write_small_png(&path, &film, recipe.rules.transfer, &description)?;
         drop(writing);
-        if let Some(still) = Still::read(&path).filter(|_| self.prints_stills) {
-            display.above(|| print(&still.line(stage)))?;
-        }
         Ok(true)
+    }
+
+    fn print(&self, stage: &Stage, display: &mut Display) -> Result<()> {
+        let still = Still::read(&self.path(stage)).filter(|_| self.prints_stills);
+        still.map_or(Ok(()), |still| display.above(|| print(&still.line(stage))))
     }
 }
 

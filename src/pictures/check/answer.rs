@@ -136,11 +136,16 @@ impl Finding {
                 percent(self.right.differing)
             ));
         }
-        if let Some(found) = self.mistake.as_ref().filter(|found| found.differing < self.right.differing) {
-            evidence.push(format!(
+        match &self.mistake {
+            Some(_) if self.right.differing == 0.0 => {
+                evidence
+                    .push("The means of blocks hardly differ; the mistake shows pixel by pixel".to_owned());
+            }
+            Some(found) if found.differing < self.right.differing => evidence.push(format!(
                 "With the mistake built into ours, they differ in {}",
                 percent(found.differing)
-            ));
+            )),
+            _ => {}
         }
         if let Some(alike) = self.alike {
             let remedy = capitalised(alike.remedy);

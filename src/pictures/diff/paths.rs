@@ -1,6 +1,6 @@
 //! Compares two records of the same path: where they differ, in which quantity, and by how much.
 
-use crate::backends::explain::{Event, Lobe, steps};
+use crate::backends::explain::{Event, Lobe, step};
 use crate::film::FIXED_POINT_SCALE;
 use crate::job::render::RenderJob;
 use crate::kernel::path_record::{PathRecord, RecordedHit, RecordedRay};
@@ -118,8 +118,7 @@ impl Pair<'_> {
     /// sphere.
     fn departure(&self, path: &PathRecord, index: usize) -> Option<&'static str> {
         // The words need no random numbers, so any pixel and sample will do.
-        let step = steps(self.job, [0, 0], 0, path).into_iter().nth(index)?;
-        match step.event {
+        match step(self.job, [0, 0], 0, path, index)?.event {
             Event::Sky => None,
             Event::Shown => Some("shown"),
             Event::Limit => Some("cut off"),

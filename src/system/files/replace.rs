@@ -67,7 +67,8 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), WriteError> {
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     let check = || match Target::find(path)? {
         // Opening a pipe would wait for its reader, and closing it would end the reader's input.
-        Target::StandardOutput | Target::Device => Ok(()),
+        Target::StandardOutput | Target::Device { is_pipe: true } => Ok(()),
+        Target::Device { .. } => OpenOptions::new().write(true).open(path).map(drop),
         Target::File { path, directory, old } => {
             leftovers::remove_from(&directory);
             let is_there = old.is_some();
@@ -93,7 +94,7 @@ pub fn check_replaceable(path: &Path) -> Result<(), WriteError> {
 enum Target {
     StandardOutput,
     File { path: PathBuf, directory: PathBuf, old: Option<Permissions> },
-    Device,
+    Device { is_pipe: bool },
 }
 
 impl Target {
@@ -106,7 +107,7 @@ impl Target {
         }
         let old = match fs::metadata(named) {
             Ok(found) if found.is_dir() => return Err(ErrorKind::IsADirectory.into()),
-            Ok(found) if !found.is_file() => return Ok(Target::Device),
+            Ok(found) if !found.is_file() => return Ok(Target::Device { is_pipe: is_pipe(&found) }),
             // A rename would replace a read-only file anyway, but the user marked it to prevent that.
             Ok(found) if found.permissions().readonly() => {
                 return Err(io::Error::new(ErrorKind::PermissionDenied, "the file is marked read-only"));
@@ -225,7 +226,7 @@ fn try_write(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Resul
             file.rewind()?;
             io::copy(&mut file, &mut io::stdout().lock()).map(drop)
         }
-        Target::Device => fill(&OpenOptions::new().write(true).open(path)?),
+        Target::Device { .. } => fill(&OpenOptions::new().write(true).open(path)?),
         Target::File { path, directory, old } => {
             let new = new_file_in(&directory, old)?;
             fill(new.as_file())?;

@@ -109,6 +109,22 @@ struct RawFile {
     rules: Rules,
 }
 
+/// Exactly three numbers; glam and arrays would ignore a fourth.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(try_from = "Vec<f64>")]
+struct Triple(DVec3);
+
+impl TryFrom<Vec<f64>> for Triple {
+    type Error = String;
+
+    fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
+        let form = "expected three numbers with points, such as [0.0, 1.5, 0.0], but found";
+        <[f64; 3]>::try_from(numbers)
+            .map(|numbers| Triple(numbers.into()))
+            .map_err(|numbers| format!("{form} {}", numbers.len()))
+    }
+}
+
 /// A whole number from `LOWEST` to `HIGHEST`.
 #[derive(Deserialize)]
 #[serde(try_from = "i64")]
@@ -128,15 +144,14 @@ type Size = Option<Whole<1, { SIZE_LIMIT as i64 }>>;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
 struct RawSky {
-    // Not vectors of glam, which would ignore a fourth number.
-    bottom: Option<[f64; 3]>,
-    top: Option<[f64; 3]>,
+    bottom: Option<Triple>,
+    top: Option<Triple>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
 struct RawSphere {
-    center: [f64; 3],
+    center: Triple,
     radius: f64,
     /// The name of a material, or the table of one.
     material: toml::Value,
@@ -148,9 +163,9 @@ struct RawSphere {
 #[serde(deny_unknown_fields, expecting = "a table")]
 struct RawCamera {
     frame: Option<Whole<0, { FRAME_LIMIT as i64 - 1 }>>,
-    look_from: Option<[f64; 3]>,
-    look_at: Option<[f64; 3]>,
-    vup: Option<[f64; 3]>,
+    look_from: Option<Triple>,
+    look_at: Option<Triple>,
+    vup: Option<Triple>,
     vfov_degrees: Option<f64>,
     defocus_angle_degrees: Option<f64>,
     focus_distance: Option<f64>,
@@ -230,8 +245,8 @@ fn sky_of(raw: Option<Spanned<RawSky>>) -> Result<Sky, Refusal> {
     let mut sky = Sky::default();
     if let Some(raw) = raw {
         let RawSky { bottom, top } = raw.get_ref();
-        sky.bottom = bottom.map_or(sky.bottom, DVec3::from);
-        sky.top = top.map_or(sky.top, DVec3::from);
+        sky.bottom = bottom.map_or(sky.bottom, |Triple(colour)| colour);
+        sky.top = top.map_or(sky.top, |Triple(colour)| colour);
         sky.validate().map_err(|error| refuse(raw.span(), error))?;
     }
     Ok(sky)
@@ -256,10 +271,10 @@ fn listed_scene(
     scene.spheres.reserve_exact(spheres.len());
     for (index, sphere) in spheres.into_iter().enumerate() {
         let place = sphere.span();
-        let RawSphere { center, radius, material } = sphere.into_inner();
+        let RawSphere { center: Triple(center), radius, material } = sphere.into_inner();
         let material = material_of(material, index, &mut scene, &mut index_of)
             .map_err(|reason| refuse(place.clone(), reason))?;
-        scene.add_sphere(center.into(), radius, material);
+        scene.add_sphere(center, radius, material);
         let validated = scene.spheres[index].validate(index, scene.materials.len());
         validated.map_err(|error| refuse(place, error))?;
     }
@@ -312,7 +327,7 @@ fn camera_of(raw: &Spanned<RawCamera>, base: Option<&Camera>) -> Result<Camera, 
         return Err(refuse(place, format!("missing key `{key}`")));
     }
     let base = base.unwrap_or(&Camera::BOOK);
-    let vector = |own: Option<[f64; 3]>, base: DVec3| own.map_or(base, DVec3::from);
+    let vector = |own: Option<Triple>, base: DVec3| own.map_or(base, |Triple(vector)| vector);
     let camera = Camera {
         look_from: vector(raw.look_from, base.look_from),
         look_at: vector(raw.look_at, base.look_at),
