@@ -418,7 +418,7 @@ table! {
         needs(|f| f.has_paths, NO_PATHS), unlisted();
     PreviousRay "Previous ray", "", |w, _| w.tools.paths.step(false), key(Key::ArrowLeft),
         needs(|f| f.has_paths, NO_PATHS), unlisted();
-    ClearPaths "Close the paths", "The path that is drawn over the picture, point by point", |w, _| {
+    ClearPaths "Close the paths", "", |w, _| {
             w.tools.paths.forget();
             w.model.remembered.dock.take_if(|dock| *dock == Dock::Path);
         }, unlisted();

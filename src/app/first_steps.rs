@@ -8,7 +8,7 @@ use crate::stages::Stage;
 use eframe::egui::{self, Frame, Label, Margin, RichText, Sides, Stroke, Ui};
 
 /// Narrower cards are higher, points.
-const THREE_COLUMNS: f32 = 620.0;
+const WIDE: f32 = 620.0;
 
 const STEPS: [&str; 3] = [
     "Drag the picture to look around it. Home returns.",
@@ -21,8 +21,8 @@ pub fn ui(ui: &mut Ui, facts: &Facts) {
     if !facts.model.has_first_steps {
         return;
     }
-    let has_columns = ui.available_width() >= THREE_COLUMNS;
-    let height = if has_columns { 140.0 } else { 168.0 };
+    let is_wide = ui.available_width() >= WIDE;
+    let height = if is_wide { 140.0 } else { 168.0 };
     if ui.available_height() < 2.0 * height {
         // The picture comes first.
         return;
@@ -39,17 +39,17 @@ pub fn ui(ui: &mut Ui, facts: &Facts) {
     panel.frame(around).show(ui, |ui| {
         card.show(ui, |ui| {
             ui.set_min_size(ui.available_size());
-            content(ui, has_columns, facts);
+            content(ui, is_wide, facts);
         });
     });
 }
 
-fn content(ui: &mut Ui, has_columns: bool, facts: &Facts) {
+fn content(ui: &mut Ui, is_wide: bool, facts: &Facts) {
     Sides::new().height(20.0).shrink_left().truncate().show(
         ui,
         |ui| {
             ui.label(RichText::new("First steps").size(16.0).strong());
-            if has_columns {
+            if is_wide {
                 ui.weak("Every picture of Ray Tracing in One Weekend, rendered while you watch.");
             }
         },

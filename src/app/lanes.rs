@@ -24,8 +24,8 @@ const HEADING: f32 = 24.0;
 /// The timelines without and with refill, recorded by a background thread while they are shown.
 #[derive(Default)]
 pub struct Lanes {
-    /// By document and number of lanes.
-    query: Query<(Document, usize), [Timeline; 2]>,
+    /// By document, its size, and number of lanes.
+    query: Query<(Document, [u32; 2], usize), [Timeline; 2]>,
 }
 
 impl Lanes {
@@ -44,7 +44,9 @@ impl Lanes {
         };
         // An invalid document is reported elsewhere.
         let Some(job) = document.job(1).ok().filter(|_| !is_moving) else { return };
-        let Some(answer) = self.query.ask(context, (document.clone(), lanes)) else { return };
+        let Some(answer) = self.query.ask(context, (document.clone(), document.size(), lanes)) else {
+            return;
+        };
         answer.give_from("lanes", move || {
             let recorder = PathRecorder::new(&job, best_isa(), None);
             let size = [job.settings().width, job.settings().height];

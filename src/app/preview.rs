@@ -17,10 +17,12 @@ const PATIENCE: f64 = 0.1;
 const STEPS: [u32; 3] = [8, 4, 2];
 const STEP_SECONDS: f64 = 0.4;
 
-/// Samples per pixel of a preview of a picture with noise, except the coarsest. A quarter of the pixels with four samples
-/// each show more than all of them with one: the eye sees noise in each pixel, but does not miss the pixels of a picture
-/// that moves.
+/// Samples per pixel of a preview of a picture with noise. A quarter of the pixels with four samples each show more than
+/// all of them with one: the eye sees noise in each pixel, but does not miss the pixels of a picture that moves.
 const SAMPLES: u64 = 4;
+
+/// The longer side of a preview keeps this many pixels as long as it can have fewer samples instead.
+const LONGER_SIDE: u32 = 140;
 
 /// The coarsest divisor of previews, and the pixels that the longer side keeps in large pictures in any case.
 const DIVISOR: u32 = 8;
@@ -32,16 +34,29 @@ const USUAL_SPEED: f64 = 3e6;
 /// Samples per second of the first preview, as a share of those of a render: passes are short, and a render must end first.
 const SHARE: f64 = 0.3;
 
-/// Chooses previews by the time that earlier ones took. A preview is the factor by which it is smaller; with 1 it is the
-/// picture itself.
+/// A coarse picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Preview {
+    /// The factor by which it is smaller. With 1 it is the picture itself.
+    pub divisor: u32,
+    /// Samples per pixel when it is first shown, a power of two.
+    pub samples: u64,
+}
+
+impl Preview {
+    /// The picture itself.
+    pub const NONE: Preview = Preview { divisor: 1, samples: 1 };
+}
+
+/// Chooses previews by the time that earlier ones took.
 #[derive(Default)]
 pub struct Previews {
     /// Samples per second of the last preview, from request to picture. It includes the cost of drawing the window.
     speed: Option<f64>,
     /// Samples per second of the last render.
     render_speed: Option<f64>,
-    /// The preview of the present move, if something moves.
-    pub moving: Option<u32>,
+    /// The preview of the present move.
+    moving: Option<Preview>,
 }
 
 impl Previews {
@@ -53,30 +68,49 @@ impl Previews {
         }
     }
 
+    /// Whether something is moving.
+    pub fn is_moving(&self) -> bool {
+        self.moving.is_some()
+    }
+
     /// The preview to show while something moves.
-    pub fn follow_move(&mut self, document: &Document) -> u32 {
+    pub fn follow_move(&mut self, document: &Document) -> Preview {
         *self.moving.insert(self.moving.unwrap_or_else(|| self.choose(document)))
     }
 
-    /// The preview to show before the first samples of a picture. `coarser` is the preview on the screen; each one is at
-    /// least twice as fine.
-    pub fn look(&self, document: &Document, coarser: Option<u32>) -> u32 {
+    /// Notes that nothing moves.
+    pub fn end_move(&mut self) {
+        self.moving = None;
+    }
+
+    /// The preview to show before the first samples of a picture. `coarser` is the divisor of what is on the screen; each
+    /// preview is at least twice as fine.
+    pub fn look(&self, document: &Document, coarser: Option<u32>) -> Preview {
         let samples = pixels(document) * document.settings.half_count() as f64;
         if samples / self.render_speed.unwrap_or(USUAL_SPEED) <= PATIENCE {
-            return 1;
+            return Preview::NONE;
         }
         let Some(coarser) = coarser else { return self.choose(document) };
         let affordable = self.speed.unwrap_or(USUAL_SPEED) * STEP_SECONDS;
-        let is_step = |divisor: &u32| 2 * divisor <= coarser && cost(document, *divisor) <= affordable;
-        STEPS.into_iter().find(is_step).unwrap_or(1)
+        let step = |divisor| Preview { divisor, samples: most_samples(document) };
+        let cost = |step: &Preview| pixels(document) * step.samples as f64 / f64::from(step.divisor).powi(2);
+        let is_step = |step: &Preview| 2 * step.divisor <= coarser && cost(step) <= affordable;
+        STEPS.map(step).into_iter().find(is_step).unwrap_or(Preview::NONE)
     }
 
-    /// The finest preview that can be afforded.
-    fn choose(&self, document: &Document) -> u32 {
+    fn choose(&self, document: &Document) -> Preview {
         let begin = SHARE * self.render_speed.unwrap_or(USUAL_SPEED);
-        let affordable = self.speed.unwrap_or(begin) * SECONDS;
-        let coarsest = coarsest(document);
-        (1..coarsest).find(|divisor| cost(document, *divisor) <= affordable).unwrap_or(coarsest)
+        let affordable = (self.speed.unwrap_or(begin) * SECONDS).max(1.0);
+        let with = |samples: u64| {
+            let divisor = (pixels(document) * samples as f64 / affordable).sqrt().ceil() as u32;
+            Preview { divisor: divisor.clamp(1, coarsest(document)), samples }
+        };
+        let fine = (longer_side(document) / LONGER_SIDE).max(1);
+        let mut preview = with(most_samples(document));
+        while preview.samples > 1 && preview.divisor > fine {
+            preview = with(preview.samples / 2);
+        }
+        preview
     }
 
     /// Notes that the first picture of a preview has come, with `samples` samples of all pixels together, after this many
@@ -89,29 +123,30 @@ impl Previews {
             && seconds > SECONDS_LIMIT
         {
             let coarser = (f64::from(divisor) * (seconds / SECONDS).sqrt()).ceil() as u32;
-            *moving = coarser.min(coarsest(document)).max(*moving);
+            let limit = coarsest(document);
+            if moving.divisor >= limit {
+                moving.samples = (moving.samples / 2).max(1);
+            }
+            moving.divisor = coarser.clamp(moving.divisor, limit.max(moving.divisor));
         }
     }
 }
 
-/// Samples per pixel of a preview when it is first shown, a power of two.
-pub fn samples_of(document: &Document, divisor: u32) -> u64 {
-    let has_noise = document.rules().shading == Shading::Path;
-    if divisor < coarsest(document) && has_noise { SAMPLES } else { 1 }
+/// Samples per pixel of a preview, if time allows.
+fn most_samples(document: &Document) -> u64 {
+    if document.rules().shading == Shading::Path { SAMPLES } else { 1 }
 }
 
 fn pixels(document: &Document) -> f64 {
     document.size().map(f64::from).into_iter().product()
 }
 
-/// Samples of all pixels of a preview.
-fn cost(document: &Document, divisor: u32) -> f64 {
-    pixels(document) * samples_of(document, divisor) as f64 / f64::from(divisor).powi(2)
+fn longer_side(document: &Document) -> u32 {
+    document.size().into_iter().max().unwrap_or(1)
 }
 
-/// The coarsest preview of a document.
 fn coarsest(document: &Document) -> u32 {
-    DIVISOR.max(document.size().into_iter().max().unwrap_or(1) / LEAST_SIDE)
+    DIVISOR.max(longer_side(document) / LEAST_SIDE)
 }
 
 #[cfg(test)]
@@ -135,55 +170,56 @@ mod tests {
     fn noise_costs_pixels_and_not_samples() {
         // 400,000 samples in the time of a preview.
         let previews = at_speed(8e6);
-        let noisy = document("book", [1000, 400]);
-        assert_eq!((previews.choose(&noisy), samples_of(&noisy, 2)), (2, 4));
-        let normals = document("normals", [1000, 400]);
-        assert_eq!((previews.choose(&normals), samples_of(&normals, 2)), (1, 1));
+        let chosen = previews.choose(&document("book", [1000, 400]));
+        assert_eq!(chosen, Preview { divisor: 2, samples: 4 });
+        let without_noise = previews.choose(&document("normals", [1000, 400]));
+        assert_eq!(without_noise, Preview { divisor: 1, samples: 1 });
     }
 
     #[test]
     fn a_slow_device_gets_few_samples_before_too_few_pixels() {
-        let chosen = |speed: f64, size| {
-            let document = document("book", size);
-            let divisor = at_speed(speed).choose(&document);
-            (divisor, samples_of(&document, divisor))
-        };
-        assert_eq!(chosen(2e5, [1024, 576]), (10, 1));
-        assert_eq!(chosen(1e6, [1024, 576]), (7, 4));
-        assert_eq!(chosen(2e4, [3840, 2160]), (38, 1), "100 pixels are left");
+        let slow = at_speed(2e5).choose(&document("book", [1024, 576]));
+        assert_eq!(slow, Preview { divisor: 8, samples: 1 });
+        let less = at_speed(4e5).choose(&document("book", [1024, 576]));
+        assert_eq!(less, Preview { divisor: 6, samples: 1 });
+        let more = at_speed(1e6).choose(&document("book", [1024, 576]));
+        assert_eq!(more, Preview { divisor: 7, samples: 4 });
+        let large = at_speed(2e4).choose(&document("book", [3840, 2160]));
+        assert_eq!(large, Preview { divisor: 38, samples: 1 }, "100 pixels are left");
     }
 
     #[test]
     fn within_a_move_previews_only_get_coarser() {
         let (mut previews, document) = (at_speed(8e6), document("book", [1024, 576]));
         let first = previews.follow_move(&document);
-        previews.pictured(&document, first, 1e6, 0.01);
+        previews.pictured(&document, first.divisor, 1e6, 0.01);
         assert_eq!(previews.follow_move(&document), first, "faster than expected");
-        previews.pictured(&document, first, 1e6, 0.2);
-        assert_eq!(previews.follow_move(&document), first * 2);
+        previews.pictured(&document, first.divisor, 1e6, 0.2);
+        let second = previews.follow_move(&document);
+        assert_eq!((second.divisor, second.samples), (first.divisor * 2, 4));
         for _ in 0..3 {
             previews.pictured(&document, 8, 1e4, 0.2);
         }
-        assert_eq!(previews.follow_move(&document), 10);
+        assert_eq!(previews.follow_move(&document), Preview { divisor: 10, samples: 1 });
         previews.pictured(&document, 2, 1e6, 0.2);
-        assert_eq!(previews.follow_move(&document), 10, "a late picture of an earlier preview");
-        previews.moving = None;
+        assert_eq!(previews.follow_move(&document).divisor, 10, "a late picture of an earlier preview");
+        previews.end_move();
         previews.pictured(&document, 8, 1e6, 0.05);
-        assert!(previews.follow_move(&document) < 10, "another move");
+        assert!(previews.follow_move(&document).divisor < 10, "another move");
     }
 
     #[test]
     fn only_what_takes_long_is_looked_at_first() {
         let mut previews = Previews::default();
-        assert_eq!(previews.look(&document("book", [320, 180]), None), 1);
-        assert!(previews.look(&document("book", [1600, 900]), None) > 2);
+        assert_eq!(previews.look(&document("book", [320, 180]), None), Preview::NONE);
+        assert!(previews.look(&document("book", [1600, 900]), None).divisor > 2);
         // Each half of the film needs a sample.
         let mut between = document("book", [640, 360]);
-        assert!(between.settings.estimate_error && previews.look(&between, None) > 1);
+        assert!(between.settings.estimate_error && previews.look(&between, None).divisor > 1);
         between.settings.estimate_error = false;
-        assert_eq!(previews.look(&between, None), 1);
+        assert_eq!(previews.look(&between, None), Preview::NONE);
         previews.render_speed = Some(1e9);
-        assert_eq!(previews.look(&document("book", [1600, 900]), None), 1);
+        assert_eq!(previews.look(&document("book", [1600, 900]), None), Preview::NONE);
     }
 
     #[test]
@@ -193,7 +229,7 @@ mod tests {
             let previews = at_speed(speed);
             let mut divisors = vec![20];
             while divisors[divisors.len() - 1] > 1 {
-                divisors.push(previews.look(&large, divisors.last().copied()));
+                divisors.push(previews.look(&large, divisors.last().copied()).divisor);
             }
             divisors
         };
@@ -206,6 +242,7 @@ mod tests {
     fn the_coarsest_preview_leaves_a_hundred_pixels_or_an_eighth() {
         for (size, divisor) in [([1000, 400], 10), ([700, 400], 8), ([100, 900], 9), ([80, 60], 8)] {
             assert_eq!(coarsest(&document("book", size)), divisor, "{size:?}");
+            assert_eq!(longer_side(&document("book", size)), size[0].max(size[1]));
         }
     }
 }

@@ -69,7 +69,8 @@ impl Window {
             None => Document::new(Origin::new(recipe, Source::File(path.clone()))),
             Some(saved) => document_of(saved, &recipe),
         };
-        document.has_own_size |= !is_left;
+        (document.has_own_size, document.is_from_file) =
+            (document.has_own_size || !is_left, document.is_from_file || !is_left);
         if let Some(samples) = saved.as_ref().filter(|saved| saved.film.is_none()).and_then(Saved::samples) {
             document.stop = Stop::at_samples(samples);
         }

@@ -69,7 +69,11 @@ impl Sighted {
             document.camera = camera;
         }
         let exposure = view.tone.exposure;
-        let kept = std::mem::take(&mut view.kept);
+        let mut kept = std::mem::take(&mut view.kept);
+        if let Some(compared) = self.view.kept.meant().filter(|_| self.view.with() == With::Kept) {
+            let place = kept.iter().position(|other| other.number == compared.number);
+            place.into_iter().for_each(|place| kept.choose(place));
+        }
         *view = self.view;
         (view.kept, view.tone.exposure) = (kept, exposure);
         *placement = self.placement;

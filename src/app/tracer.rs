@@ -1,7 +1,7 @@
 //! The window's side of a progressive render: what is wanted, what is running, and the newest picture as a texture.
 
 use super::model::Document;
-use super::preview::{Previews, samples_of};
+use super::preview::{Preview, Previews};
 use super::texture::Texture;
 use crate::backends::BackendChoice;
 use crate::film::Film;
@@ -43,13 +43,13 @@ pub struct Want<'a> {
 }
 
 impl Want<'_> {
-    fn plan(&self, is_held: bool, divisor: u32) -> Plan {
+    fn plan(&self, is_held: bool, preview: Preview) -> Plan {
         let pass_target = if self.is_moving { MOVING_PASS } else { STILL_PASS };
         let mut stop = self.stop;
         if is_held {
             stop.samples = Some(stop.samples.map_or(PAUSED_SAMPLES, |samples| samples.min(PAUSED_SAMPLES)));
         }
-        let preview = (divisor > 1).then(|| samples_of(self.document, divisor));
+        let preview = (preview.divisor > 1).then_some(preview.samples);
         Plan { pass_target, preview, ..Plan::until(stop) }
     }
 }
@@ -57,8 +57,7 @@ impl Want<'_> {
 /// A render that was started.
 pub struct Started {
     document: Document,
-    /// 1, or the factor by which a preview is smaller.
-    divisor: u32,
+    preview: Preview,
     run: u64,
     at: Instant,
     is_pictured: bool,
@@ -135,7 +134,7 @@ impl Tracer {
 
     /// Whether the current film is the full-size film of the document.
     pub fn is_full(&self, document: &Document) -> bool {
-        self.run_of(document).is_some_and(|run| run.divisor == 1)
+        self.run_of(document).is_some_and(|run| run.preview.divisor == 1)
     }
 
     /// Whether there is a picture of the document, at any size.
@@ -145,7 +144,7 @@ impl Tracer {
 
     /// Whether the render is a preview.
     pub fn is_coarse(&self) -> bool {
-        self.started.as_ref().is_some_and(|run| run.divisor > 1)
+        self.started.as_ref().is_some_and(|run| run.preview.divisor > 1)
     }
 
     /// Whether the render began during a pause that lasts.
@@ -190,7 +189,7 @@ impl Tracer {
     pub fn poll(&mut self, context: &egui::Context) -> Option<Instant> {
         self.status = Arc::new(self.progressive.status());
         let started = self.started.as_mut()?;
-        if started.divisor == 1 {
+        if started.preview.divisor == 1 {
             self.previews.note_speed(&self.status);
         }
         let mut pictured = None;
@@ -200,26 +199,23 @@ impl Tracer {
             self.shown = Some(Shown {
                 texture: Texture::new([picture.width, picture.height], &picture.rgb8, earlier),
                 samples: picture.samples_per_pixel,
-                divisor: started.divisor,
+                divisor: started.preview.divisor,
                 document: started.document.clone(),
                 run: started.run,
             });
-            if !started.is_pictured && (self.previews.moving.is_some() || started.divisor > 1) {
+            if !started.is_pictured && (self.previews.is_moving() || started.preview.divisor > 1) {
                 let samples = picture.samples_per_pixel as f64;
                 let samples = samples * f64::from(picture.width) * f64::from(picture.height);
                 let seconds = started.at.elapsed().as_secs_f64();
-                self.previews.pictured(&started.document, started.divisor, samples, seconds);
+                self.previews.pictured(&started.document, started.preview.divisor, samples, seconds);
             }
             started.is_pictured = true;
             pictured = Some(started.at);
         }
         let (age, is_pictured) = (started.at.elapsed(), started.is_pictured);
         // After many samples, the picture changes slowly.
-        let interval = if self.previews.moving.is_some() {
-            Duration::ZERO
-        } else {
-            (age / 20).min(PICTURE_INTERVAL_LIMIT)
-        };
+        let interval =
+            if self.previews.is_moving() { Duration::ZERO } else { (age / 20).min(PICTURE_INTERVAL_LIMIT) };
         if (self.asked.elapsed() >= interval || !is_pictured) && !self.is_confetti() {
             self.progressive.ask_for_picture();
             self.asked = Instant::now();
@@ -234,7 +230,7 @@ impl Tracer {
     fn is_confetti(&self) -> bool {
         let Some(started) = &self.started else { return false };
         let is_preview = |shown: &Shown| shown.divisor > 1 && shown.document.has_same_film(&started.document);
-        started.divisor == 1
+        started.preview.divisor == 1
             && self.status.phase.is_working()
             && self.status.samples_per_pixel < CLEARER_SAMPLES
             && started.at.elapsed() < PREVIEW_LIMIT
@@ -248,15 +244,15 @@ impl Tracer {
     pub fn want(&mut self, want: &Want<'_>, film: Option<Film>) -> Result<(), String> {
         self.look(&want.view);
         if film.is_some() {
-            return self.start(want, 1, film);
+            return self.start(want, Preview::NONE, film);
         }
-        let divisor = if want.is_moving {
+        let preview = if want.is_moving {
             self.previews.follow_move(want.document)
         } else {
-            self.previews.moving = None;
+            self.previews.end_move();
             self.still(want)
         };
-        if self.run_of(want.document).is_some_and(|run| run.divisor <= divisor) {
+        if self.run_of(want.document).is_some_and(|run| run.preview.divisor <= preview.divisor) {
             self.adjust(want);
             return Ok(());
         }
@@ -265,34 +261,34 @@ impl Tracer {
         if want.is_moving && is_unseen && self.status.phase.is_working() {
             return Ok(());
         }
-        self.start(want, divisor, None)
+        self.start(want, preview, None)
     }
 
     /// What to render of a picture that does not move. Previews are for the CPU: a GPU is fast or has to compile first.
-    fn still(&self, want: &Want<'_>) -> u32 {
+    fn still(&self, want: &Want<'_>) -> Preview {
         let is_cpu = matches!(want.backend, BackendChoice::Cpu(_) | BackendChoice::Reference { .. });
         // The same picture at another size is on the screen already.
         let is_there = |shown: &Shown| shown.document.is_same_at_another_size(want.document);
         match self.run_of(want.document) {
-            Some(run) if run.divisor == 1 => 1,
-            Some(run) if !run.is_pictured && self.status.phase.is_working() => run.divisor,
-            Some(run) if is_cpu => self.previews.look(want.document, Some(run.divisor)),
+            Some(run) if run.preview.divisor == 1 => Preview::NONE,
+            Some(run) if !run.is_pictured && self.status.phase.is_working() => run.preview,
+            Some(run) if is_cpu => self.previews.look(want.document, Some(run.preview.divisor)),
             None if is_cpu && !self.shown.as_ref().is_some_and(is_there) => {
                 self.previews.look(want.document, None)
             }
-            _ => 1,
+            _ => Preview::NONE,
         }
     }
 
-    fn start(&mut self, want: &Want<'_>, divisor: u32, film: Option<Film>) -> Result<(), String> {
-        let job = want.document.job(divisor).map_err(|error| error.to_string())?;
-        let plan = want.plan(want.is_paused, divisor);
+    fn start(&mut self, want: &Want<'_>, preview: Preview, film: Option<Film>) -> Result<(), String> {
+        let job = want.document.job(preview.divisor).map_err(|error| error.to_string())?;
+        let plan = want.plan(want.is_paused, preview);
         let request = RenderRequest { film, ..RenderRequest::new(job, want.backend.clone(), plan.clone()) };
         self.progressive.start(request);
         self.status = Arc::new(self.progressive.status());
         self.started = Some(Started {
             document: want.document.clone(),
-            divisor,
+            preview,
             run: self.status.run,
             at: Instant::now(),
             is_pictured: false,
@@ -309,7 +305,7 @@ impl Tracer {
     fn adjust(&mut self, want: &Want<'_>) {
         let Some(run) = &mut self.started else { return };
         run.is_held &= want.is_paused;
-        let plan = want.plan(run.is_held, run.divisor);
+        let plan = want.plan(run.is_held, run.preview);
         let Some((sent_backend, sent_plan)) = &mut self.sent else { return };
         if sent_backend != want.backend {
             sent_backend.clone_from(want.backend);
@@ -333,17 +329,17 @@ mod tests {
     fn passes_are_short_while_something_moves_and_few_during_a_pause() {
         let document = Document::new(Origin::usual());
         let backend = BackendChoice::Cpu(CpuOptions::default());
-        let plan = |stop, is_moving, is_held, divisor| {
+        let plan = |stop, is_moving, is_held, preview| {
             let view = View::Picture;
             Want { document: &document, backend: &backend, stop, view, is_moving, is_paused: false }
-                .plan(is_held, divisor)
+                .plan(is_held, preview)
         };
         let stop = Stop::at_samples(100);
-        let still = plan(stop, false, false, 1);
+        let still = plan(stop, false, false, Preview::NONE);
         assert_eq!((still.pass_target, still.stop, still.preview), (Duration::from_millis(40), stop, None));
-        let moving = plan(stop, true, false, 2);
+        let moving = plan(stop, true, false, Preview { divisor: 2, samples: 4 });
         assert_eq!((moving.pass_target, moving.preview), (Duration::from_millis(10), Some(4)));
-        let held = |stop| plan(stop, false, true, 1).stop.samples;
+        let held = |stop| plan(stop, false, true, Preview::NONE).stop.samples;
         assert_eq!([stop, Stop::at_samples(3), Stop::default()].map(held), [Some(8), Some(3), Some(8)]);
     }
 
@@ -376,7 +372,7 @@ mod tests {
         let want = wish(&document, &backend, false);
         for is_pictured in [false, true] {
             let mut tracer = Tracer::new().unwrap();
-            tracer.start(&want, 2, None).unwrap();
+            tracer.start(&want, Preview { divisor: 2, samples: 4 }, None).unwrap();
             assert!(tracer.run_of(&document).is_some() && !tracer.is_full(&document));
             tracer.started.as_mut().unwrap().is_pictured = is_pictured;
             tracer.want(&want, None).unwrap();

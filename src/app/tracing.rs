@@ -74,7 +74,7 @@ impl Tracing {
         self.main.started = None;
     }
 
-    /// Gives the document the size that fits the window, if its samples are not worth more or needed.
+    /// Gives the document the size that fits the window, unless its samples are worth more or are needed.
     pub fn follow_size(&mut self, context: &Context, model: &mut Model, room: [u32; 2], is_needed: bool) {
         if self.film.is_some() {
             return;

@@ -114,7 +114,7 @@ pub(super) fn ui(ui: &mut Ui, path: &Path, at: usize, document: &Document) {
         }
         plot.text(label(points[0] - DVec2::Y * 0.3 * margin, Align2::CENTER_TOP, "camera"));
         if let Some(end) = points.get(hits.len() + 1) {
-            plot.text(label(*end, Align2::RIGHT_CENTER, "to the sky  "));
+            plot.text(label(*end + DVec2::Y * 0.2 * margin, Align2::CENTER_BOTTOM, "to the sky"));
         }
     });
 }
