@@ -100,6 +100,17 @@ fn full_disk_keeps_finished_stills() {
 }
 
 #[test]
+fn a_still_that_could_not_be_printed_is_kept_and_counted() {
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full");
+    let Ok(full) = full else { return };
+    let at = TempDir::new().unwrap();
+    let output = command(at.path(), &["--quick", "--only", "ppm-tiny"]).stdout(full).output().unwrap();
+    let (code, _, message) = outcome(&output);
+    assert!(code == Some(3) && message.contains("kept: 1 picture"), "{code:?}: {message}");
+    assert_eq!(names(&at.path().join("g")), ["ppm-tiny.png"]);
+}
+
+#[test]
 fn bad_input_is_refused_with_a_remedy() {
     let at = TempDir::new().unwrap();
     let at = at.path();
