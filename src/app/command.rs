@@ -387,7 +387,7 @@ table! {
         also("kept slot compare blink");
     KeptWipe "Wipe with the kept picture", "Drag a divider between it and the picture",
         |w, _| w.model.view.toggle(Mode::Wipe, With::Kept), keys(SHIFT, Key::C), needs(has_kept, NOTHING_KEPT),
-        on(|f| f.model.view.mode() == Some(Mode::Wipe) && f.model.view.compared_kept().is_some() && f.model.view.looked().is_none()),
+        on(|f| f.model.view.mode() == Some(Mode::Wipe) && f.model.view.compared_kept().is_some() && is_live(f)),
         also("slot compare");
     KeptDifference "Difference from the kept picture", "Subtracts it from the picture",
         |w, _| w.model.view.toggle(Mode::Difference, With::Kept), keys(SHIFT, Key::X), off(Facts::not_subtractable),

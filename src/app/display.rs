@@ -1,14 +1,8 @@
-//! How the picture is shown: the viewport, the layers and numbers over it, and the pictures that were kept; and what
-//! explains it: pixel, paths, lanes, code, and the check of the user's own picture.
+//! How the picture is shown: the viewport, the layers and numbers over it, and the pictures that were kept.
 
-use super::check::Check;
-use super::code::Code;
-use super::inspector::Inspector;
 use super::kept::KeptActions;
-use super::lanes::Lanes;
 use super::layers::Layers;
-use super::model::{CheckedScene, Dock, Model, Show};
-use super::paths::Paths;
+use super::model::{CheckedScene, Model, Show};
 use super::pixel_values::PixelValues;
 use super::sight::Sighted;
 use super::spheres::is_lost;
@@ -64,31 +58,5 @@ impl Display {
         let is_picture = view.mode().is_none() && view.show() == Show::Picture;
         let area = self.viewport.room.filter(|_| is_picture);
         self.values.follow(&subject, self.viewport.placement.rect, area, context);
-    }
-}
-
-#[derive(Default)]
-pub struct Tools {
-    pub inspector: Inspector,
-    pub paths: Paths,
-    pub lanes: Lanes,
-    pub code: Code,
-    pub check: Check,
-}
-
-impl Tools {
-    /// Asks background threads for what is to be explained.
-    pub fn follow(&mut self, context: &Context, model: &Model, subject: &Subject<'_>, is_moving: bool) {
-        self.inspector.follow(subject, context);
-        self.paths.follow(&model.document, context);
-        let is_open = model.has_panels() && model.remembered.dock == Some(Dock::Lanes);
-        let count = is_open.then(|| model.remembered.lanes_in_use());
-        self.lanes.follow(context, &model.document, count, is_moving);
-    }
-
-    /// Forgets what belonged to the picture that was shown before.
-    pub fn forget(&mut self) {
-        self.inspector.forget();
-        self.paths.forget();
     }
 }

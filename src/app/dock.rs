@@ -1,11 +1,11 @@
 //! The dock under the picture: a path, the kept pictures, the lanes, and the error over time.
 
 use super::command::Command;
-use super::display::Tools;
 use super::facts::Facts;
 use super::kept::KeptActions;
 use super::menu::item;
 use super::model::{Dock, Model, ViewState};
+use super::tools::Tools;
 use super::widgets::{
     TABS, choice, command_button, command_switch, hint, panel_line, sign_button, small, tip,
 };

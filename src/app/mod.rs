@@ -52,6 +52,7 @@ mod texture;
 mod theme;
 mod toasts;
 mod tone;
+mod tools;
 mod tracer;
 mod tracing;
 mod viewport;

@@ -4,7 +4,7 @@
 use super::autosave::{Autosave, picture_of};
 use super::changes::Changes;
 use super::command::Command;
-use super::display::{Display, Tools};
+use super::display::Display;
 use super::facts::Facts;
 use super::files::Files;
 use super::frame_log::FrameLog;
@@ -13,6 +13,7 @@ use super::model::{Device, DeviceOptions, Document, Model, Origin, Source, Store
 use super::shell::Shell;
 use super::subject::Subject;
 use super::theme;
+use super::tools::Tools;
 use super::tracing::Tracing;
 use crate::cli::WindowOptions;
 use crate::job::recipe::Recipe;

@@ -52,7 +52,8 @@ impl FilmSum {
         let (first, other) = (self.first.shown(), path.shown());
         if let Err(difference) = same_job(self.description.recipe(), description.recipe()) {
             bail!(
-                "{other} is the film of another picture than {first}: {difference}; leave it out or, if it is in the directory of a plan, move it away"
+                "{other} is the film of another picture than {first}: {difference}; leave it out, or move it out of the \
+                 plan's directory"
             );
         }
         for (path, samples) in &self.parts {

@@ -1,0 +1,36 @@
+//! What explains the picture: pixel, paths, lanes, code, and the check of the user's own picture.
+
+use super::check::Check;
+use super::code::Code;
+use super::inspector::Inspector;
+use super::lanes::Lanes;
+use super::model::{Dock, Model};
+use super::paths::Paths;
+use super::subject::Subject;
+use eframe::egui::Context;
+
+#[derive(Default)]
+pub struct Tools {
+    pub inspector: Inspector,
+    pub paths: Paths,
+    pub lanes: Lanes,
+    pub code: Code,
+    pub check: Check,
+}
+
+impl Tools {
+    /// Asks background threads for what is to be explained.
+    pub fn follow(&mut self, context: &Context, model: &Model, subject: &Subject<'_>, is_moving: bool) {
+        self.inspector.follow(subject, context);
+        self.paths.follow(&model.document, context);
+        let is_open = model.has_panels() && model.remembered.dock == Some(Dock::Lanes);
+        let count = is_open.then(|| model.remembered.lanes_in_use());
+        self.lanes.follow(context, &model.document, count, is_moving);
+    }
+
+    /// Forgets what belonged to the picture that was shown before.
+    pub fn forget(&mut self) {
+        self.inspector.forget();
+        self.paths.forget();
+    }
+}
