@@ -3,7 +3,7 @@
 
 use super::describer;
 use crate::app::model::{CheckedScene, Document, Model, Origin, Source};
-use crate::app::toolkit::answers::Answers;
+use crate::app::toolkit::Answers;
 use crate::app::tracing::Tracing;
 use crate::film::{Description, Film, checkpoint};
 use crate::job::recipe::{Recipe, file};

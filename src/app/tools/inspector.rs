@@ -1,9 +1,8 @@
 //! The pixel inspector: value, error, and the surface under the pointer.
 
 use crate::app::model::Document;
-use crate::app::toolkit::answers::Query;
-use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{compact, hint, tip};
+use crate::app::toolkit::{Query, theme};
 use crate::app::tracing::subject::{PictureId, Subject};
 use crate::backends::layers::Layer;
 use crate::film::to_byte;
