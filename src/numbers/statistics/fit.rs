@@ -144,8 +144,8 @@ mod tests {
         assert_eq!(time_to(&points, 0.2), None);
     }
 
-    /// The measured slope is weighted by its uncertainty (at least that of a scatter of .02) against a slope of -.5 +-
-    /// .08.
+    /// The measured slope is weighted by its uncertainty (at least that of a scatter of 0.02) against a slope of -0.5 +-
+    /// 0.08.
     #[test]
     fn predicted_slope_is_bounded() {
         // The logarithms of four times, each twice the last, have squares around their mean of 5 ln(2)^2.
