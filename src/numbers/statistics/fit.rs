@@ -91,7 +91,7 @@ const PRIOR_SLOPE_DEVIATION: f64 = 0.08;
 const LEAST_SCATTER: f64 = 0.02;
 
 /// Predicts when the error, `now` at the time `now.time`, falls to the target. `history` holds earlier estimates,
-/// oldest first, of which the last [`TAIL`] are used.
+/// oldest first; only the last [`TAIL`] are used.
 ///
 /// The slope is that of the history and `now`, averaged with the slope of independent samples, weighted by their
 /// uncertainties. `None` if the target has been reached.
