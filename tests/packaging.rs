@@ -7,9 +7,12 @@ mod own_scene;
 #[allow(dead_code, reason = "its main function is not called")]
 #[path = "../examples/render_a_film.rs"]
 mod render_a_film;
+#[path = "skip_common/mod.rs"]
+mod skip_common;
 #[path = "../examples/package/texts.rs"]
 mod texts;
 
+use skip_common::report_untested;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -30,7 +33,9 @@ fn check(program: &str, arguments: &[&str]) {
             let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
             assert!(output.status.success(), "{program} {arguments:?}: {said}");
         }
-        Err(error) => eprintln!("{program} was not run ({error}): not checked: {arguments:?}"),
+        Err(error) => {
+            report_untested(&format!("{program} cannot be run ({error}): not checked: {arguments:?}"))
+        }
     }
 }
 
