@@ -4,7 +4,7 @@ use crate::stages::Transfer;
 use crate::system::memory;
 use anyhow::{Result, ensure};
 
-/// What integer values mean.
+/// The meaning of integer values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Encoding {
     /// As Weekender and the book write them: the transfer, then `floor(256 v)`. Values of another largest one than 255 or
@@ -38,8 +38,10 @@ pub struct ReadPicture {
     pub format: &'static str,
     pub values: Values,
     pub damages: Vec<Damage>,
-    /// What the reader left out or assumed.
+    /// Omissions and assumptions of the reader.
     pub notes: Vec<String>,
+    /// The meaning of integers according to the file.
+    pub stated: Option<Encoding>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -126,6 +128,18 @@ pub(super) fn note_on_alpha(translucent: usize) -> Option<String> {
     (translucent > 0).then(note)
 }
 
+/// A note if red, green, blue and white (CIE x, y) are not those of sRGB.
+pub(super) fn note_on_primaries(found: [[f32; 2]; 4]) -> Option<String> {
+    let usual = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]];
+    let is_near = |(found, usual): (&f32, &f32)| (found - usual).abs() < 2e-3;
+    let [x, y] = found[0];
+    (!found.as_flattened().iter().zip(usual.as_flattened()).all(is_near)).then(|| {
+        format!(
+            "its colours are not those of sRGB (its red is at {x},{y} instead of 0.64,0.33); they are not converted"
+        )
+    })
+}
+
 impl Encoding {
     /// The interval of linear values that are stored as `value` of up to `most`. At the top it is NaN, as all brighter
     /// values are stored so.
@@ -133,10 +147,20 @@ impl Encoding {
         if value >= most { [f64::NAN; 2] } else { self.ends(value, most, row, height) }
     }
 
-    /// The least and the largest linear value that are stored as `value` of up to `most`, if nothing is brighter.
+    /// The range of linear values that encode to `value` with maximum `most`, if nothing is brighter.
     fn ends(self, value: u16, most: u16, row: usize, height: usize) -> [f64; 2] {
         let ends = if self == Encoding::Srgb { rounded(value, most) } else { displayed(value, most) };
         ends.map(|end| self.linear(end.max(0.0), row, height))
+    }
+
+    /// How messages name it.
+    pub fn name(self) -> String {
+        match self {
+            Encoding::Book(Transfer::Linear) => "linear".to_owned(),
+            Encoding::Book(_) => "gamma2".to_owned(),
+            Encoding::Gamma(exponent) => format!("of gamma {exponent:.3}"),
+            Encoding::Srgb => "sRGB".to_owned(),
+        }
     }
 
     /// The linear value of a displayed one, within `0..=1`.

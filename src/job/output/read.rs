@@ -1,7 +1,7 @@
 //! Reads pictures of any program: PNG, EXR, and Netpbm's formats.
 
 use super::decoded::{PIXEL_LIMIT, ReadPicture, Values, check_memory, note_on_alpha, pixel_count};
-use super::{exr, netpbm};
+use super::{exr, netpbm, png};
 use crate::film::checkpoint;
 use crate::system::files::{self, ShownPath};
 use anyhow::{Result, anyhow, ensure};
@@ -49,7 +49,9 @@ const LENGTH_LIMIT: u64 = 16 * PIXEL_LIMIT;
 /// Largest expansion of a byte: deflate expands up to 1032 times, and one bit of a palette index becomes 3 bytes.
 const LARGEST_RATIO: u64 = 1032 * 24;
 
-fn read_png(reader: impl BufRead + Seek, length: u64) -> Result<ReadPicture> {
+fn read_png(mut reader: impl BufRead + Seek, length: u64) -> Result<ReadPicture> {
+    let (stated, mut notes) = png::colours(&mut reader);
+    reader.rewind()?;
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(8 * PIXEL_LIMIT);
     let incomplete = |error| anyhow!("{error}; check whether the file is complete");
@@ -68,7 +70,7 @@ fn read_png(reader: impl BufRead + Seek, length: u64) -> Result<ReadPicture> {
     } else {
         0
     };
-    let notes = note_on_alpha(translucent).into_iter().collect();
+    notes.extend(note_on_alpha(translucent));
     let is_deep = image.color().bytes_per_pixel() > image.color().channel_count();
     let (most, values): (u16, Vec<u16>) = if is_deep {
         (u16::MAX, image.to_rgb16().into_raw())
@@ -77,7 +79,7 @@ fn read_png(reader: impl BufRead + Seek, length: u64) -> Result<ReadPicture> {
     };
     let rgb = values.as_chunks::<3>().0.to_vec();
     let values = Values::Integers { most, rgb };
-    Ok(ReadPicture { width, height, format: "PNG", values, damages: Vec::new(), notes })
+    Ok(ReadPicture { width, height, format: "PNG", values, damages: Vec::new(), notes, stated })
 }
 
 #[cfg(test)]
