@@ -1,4 +1,4 @@
-//! What the next window takes over: settings, and the film that the last one saved by itself.
+//! State that the next window takes over: settings, and the autosaved film.
 
 use crate::common::{has_samples, opened, send, until};
 use crate::questions::Ask as _;
@@ -32,7 +32,7 @@ fn held(window: &Window) -> u64 {
 }
 
 fn has_offer(harness: &Harness<'_, Window>) -> bool {
-    harness.query_by_label("Go on with it").is_some()
+    harness.query_by_label("Resume").is_some()
 }
 
 #[test]
@@ -75,7 +75,7 @@ fn the_film_of_a_window_that_ended_early_is_offered() {
     let samples = checkpoint::load(&state.path().join("recovered.exr")).unwrap().film.sample_count();
     assert_ne!(next.state().shown_document().camera.vfov_degrees, 31.0, "it was opened unasked");
     until(&mut next, "a film of its own", |_| film.exists());
-    next.get_by_label("Go on with it").click();
+    next.get_by_label("Resume").click();
     until(&mut next, "its samples", |window| held(window) == samples);
     assert_eq!(next.state().shown_document().camera.vfov_degrees, 31.0);
     next.state_mut().on_exit(None);
@@ -89,7 +89,7 @@ fn what_cannot_be_written_is_told_and_rendering_goes_on() {
     // Nothing can be written where a folder is.
     std::fs::create_dir_all(state.path().join("autosave.exr/full")).unwrap();
     let mut harness = window(&format!("{PICTURE} --samples 4000000000"), state.path(), 0);
-    let told = "Not saved by itself: ";
+    let told = "Autosave failed: ";
     until(&mut harness, told, |window| window.messages().iter().any(|text| text.starts_with(told)));
     let samples = harness.state().status().samples_per_pixel;
     until(&mut harness, "more samples", |window| window.status().samples_per_pixel > samples);
@@ -119,7 +119,7 @@ fn remembering(arguments: &str, stored: &Stored) -> Harness<'static, Window> {
 }
 
 #[test]
-fn settings_are_remembered_and_those_of_another_version_ignored() {
+fn settings_of_the_same_version_are_remembered() {
     let mut stored = Stored::default();
     let mut harness = remembering("--stage metal --size 16x9", &stored);
     for command in [

@@ -8,7 +8,7 @@ use eframe::egui::{Context, Frame, Margin, RichText, ScrollArea, Sides, Ui};
 
 const GROUPS: [&str; 8] = ["The picture", "Camera", "File", "Edit", "View", "Render", "Stage", "Other"];
 
-/// What the mouse does, and keys that no single command has: group, words and keys.
+/// Mouse actions, and keys that belong to no single command: group, words and keys.
 const MOUSE: [(&str, &str, &str); 18] = [
     ("The picture", "Zoom at the pointer", "Ctrl and wheel"),
     ("The picture", "Move the picture", "Shift drag"),

@@ -1,4 +1,4 @@
-//! The film that the window saves by itself: at intervals, at the end and on a panic. The next window goes on with it.
+//! Autosave: the window saves its film at intervals, at the end and on a panic. The next window resumes it.
 //! A lock keeps several windows apart; a window that does not end in order leaves it behind.
 
 use super::describer;
@@ -29,7 +29,7 @@ const PATIENCE: Duration = Duration::from_millis(200);
 /// The entry of a film's description with the [`Note`].
 const NOTE: &str = "Window";
 
-/// What the window adds to the description of its film, as JSON.
+/// The window's addition to the description of its film, as JSON.
 #[derive(Default, Serialize, Deserialize)]
 #[serde(default)]
 struct Note {
@@ -75,7 +75,7 @@ pub fn picture_of(path: &Path) -> Option<(Document, u64)> {
     Some((document_of(&saved, &saved.recipe().ok()?), saved.samples()?))
 }
 
-/// The document of a film or picture. One that a window has saved by itself is as it was there.
+/// The document of a film or picture. An autosaved one is as it was in its window.
 pub fn document_of(saved: &Saved, recipe: &Recipe) -> Document {
     let note = saved.description.get(NOTE).and_then(|note| serde_json::from_str::<Note>(note).ok());
     let Some(note) = note else { return Document::of_film(recipe, saved.stage()) };
@@ -104,7 +104,7 @@ impl Place {
         let path = lock_in(directory);
         let has_ended_early = path.exists();
         let lock = lock_path(&path, PATIENCE)
-            .inspect_err(|error| log::info!("this window does not save its film by itself: {error}"))
+            .inspect_err(|error| log::info!("autosave is off in this window: {error}"))
             .ok()?;
         let place = Place { directory: directory.to_owned(), _lock: lock };
         if has_ended_early {
@@ -145,7 +145,7 @@ pub struct Autosave {
 }
 
 impl Autosave {
-    /// Films that took longer than `every` are saved in `directory`, and again each `every`.
+    /// Saves films to `directory` after each `every` of tracing.
     pub fn new(directory: Option<&Path>, every: Duration) -> Self {
         Autosave {
             place: directory.and_then(Place::claim),
@@ -192,7 +192,7 @@ impl Autosave {
         }
         (self.written, self.begun) = (now, Instant::now());
         let (path, describe) = (place.film(), describe(document, tracing));
-        // A film that is gone before it is copied is no failure.
+        // A film that is gone before it is copied is not a failure.
         let answer = self.outcomes.answer(context);
         tracing.main.inspect(move |film| {
             let write = move |film: &Film| write(&path, film, &describe(film));

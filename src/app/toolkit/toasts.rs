@@ -18,7 +18,7 @@ struct Toast {
     since: Instant,
     /// It stays until it is closed or withdrawn.
     stays: bool,
-    /// What it offers to do.
+    /// Commands that it offers.
     offers: Vec<Command>,
     /// Its lower edge above that of the picture, and its height, points. It never moves.
     place: Option<(f32, f32)>,

@@ -46,7 +46,7 @@ impl Inspector {
         }
     }
 
-    /// What is known about the pixel.
+    /// The known facts about a pixel.
     pub fn pixel(&self) -> Option<&Pixel> {
         self.query.answer.as_ref()
     }

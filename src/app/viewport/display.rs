@@ -23,9 +23,9 @@ pub struct Display {
     pub values: PixelValues,
     pub denoising: Denoising,
     pub kept: KeptActions,
-    /// Nothing but sky and ground is in sight, unlike from the camera of the stage.
+    /// Only sky and ground are in sight, unlike from the stage's camera.
     pub is_lost: bool,
-    /// Camera and scene of which that was found.
+    /// The camera and scene that were judged.
     judged: Option<(Camera, Arc<CheckedScene>)>,
     /// What "Show me" has changed, to return to.
     pub sight: Option<Sighted>,

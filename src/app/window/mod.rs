@@ -30,9 +30,9 @@ use std::time::{Duration, Instant};
 /// The window of the program.
 #[doc(hidden)]
 pub struct Window {
-    /// What the user has chosen.
+    /// The user's choices.
     pub model: Model,
-    /// What can be undone.
+    /// The undo history.
     pub changes: Changes,
     pub tracing: Tracing,
     pub display: Display,
@@ -270,8 +270,7 @@ impl Window {
         if !autosave.is_restoring
             && let Some(reason) = autosave.follow(context, &model.document, tracing)
         {
-            let words =
-                format!("Not saved by itself: {reason}; rendering goes on, and saving is tried again");
+            let words = format!("Autosave failed: {reason}. Rendering continues; the next save will retry");
             shell.toasts.bad(words);
         }
         tools.follow(context, model, &subject, is_moving);

@@ -1,6 +1,6 @@
 //! 8-bit PNG. Each key of the description is the keyword of a text chunk; the recipe's chunk is compressed.
 
-use super::read::note_on_primaries;
+use super::decoded::note_on_primaries;
 use super::{Description, Encoding, RECIPE_KEY, RECIPE_LIMIT, write_rows};
 use crate::film::Film;
 use crate::stages::Transfer;
