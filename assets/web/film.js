@@ -44,7 +44,7 @@ class Gpu {
     const names = `${info.vendor} ${info.architecture} ${info.device} ${info.description}`;
     const isSoftware = info.isFallbackAdapter || /llvmpipe|softpipe|swiftshader|swrast|basic render/i.test(names);
     // Drivers in software may end loops after some turns, and count those of all threads that run in step.
-    this.turnLimit = data.constants.turn_limit / (isSoftware ? clamped(info.subgroupMaxSize ?? 8, 8, 64) : 1);
+    this.turnLimit = data.constants.iteration_limit / (isSoftware ? clamped(info.subgroupMaxSize ?? 8, 8, 64) : 1);
     this.busyThreads = isSoftware ? 4096 : Infinity;
     const group = (...types) =>
       device.createBindGroupLayout({
@@ -85,7 +85,7 @@ class Film {
     const size = [stage.width, stage.height].map((pixels) => Math.ceil(pixels / scale));
     const { buffers, overrides } = inputs(stage, settings, size);
     // Paths that may be longer than a driver's loops are put aside: see shaders/aside.wgsl.
-    const turns = settings.depth * (1 + stage.turns_over_lists) + 1;
+    const turns = settings.depth * (1 + stage.iterations_over_lists) + 1;
     const whole = Math.floor((gpu.turnLimit - 1) / turns);
     const isAside = overrides.HIERARCHY === 1 || whole < 1;
     const [kernel, resolver] = await Promise.all([
@@ -113,7 +113,7 @@ class Film {
     this.picture = this.buffer("picture", 4 * width * height, STORAGE | COPY_SRC);
     this.shown = this.buffer("shown", 4 * width * height, MAP_READ | COPY_DST);
     const sums = this.buffer("film", constants.pixel_size * width * height, STORAGE);
-    const aside = this.buffer("aside", constants.aside_size * threads, STORAGE);
+    const aside = this.buffer("aside", constants.suspended_size * threads, STORAGE);
     const scene = inputs.map((bytes, i) => {
       const buffer = this.buffer("scene", bytes.length, (i === 0 ? UNIFORM : STORAGE) | COPY_DST);
       gpu.device.queue.writeBuffer(buffer, 0, bytes);
@@ -172,7 +172,7 @@ class Film {
     writeWords(words, 0, "Block", block);
     this.gpu.device.queue.writeBuffer(this.blocks, 0, words);
     const [paths, samples] = [count * workgroup_size * block.count, this.pixelsWithin(first, count) * block.count];
-    const order = { first_tile: first, tile_count: count, block_count: 1, turn_limit: this.gpu.turnLimit };
+    const order = { first_tile: first, tile_count: count, block_count: 1, iteration_limit: this.gpu.turnLimit };
     const { DispatchCounters, Counters } = data.records;
     const from = [this.counters, Counters.dispatch, this.receipt];
     let finished = 0;

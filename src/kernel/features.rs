@@ -31,6 +31,11 @@ pub mod parts {
         (RULES, "stage rules"),
     ];
 
+    /// Whether a kernel with the parts `present` has all those `needed`.
+    pub const fn include(present: u32, needed: u32) -> bool {
+        needed & !present == 0
+    }
+
     /// Describes a kernel with these parts.
     pub fn describe(parts: u32) -> String {
         let present = labels_of(parts);
@@ -135,6 +140,17 @@ macro_rules! features {
             $($(#[doc = $doc])* pub $name: $type,)*
         }
 
+        impl<const PARTS: u32> KernelFeatures<'_, PARTS> {
+            $(
+                $(#[doc = $doc])*
+                #[inline(always)]
+                pub fn $name(self) -> $type {
+                    let part = last!(parts::NONE $(, parts::$part)?);
+                    if parts::include(PARTS, part) { self.0.$name } else { $off }
+                }
+            )*
+        }
+
         impl Default for Features {
             /// A kernel with everything that a job without stage rules and hierarchy may need.
             fn default() -> Self {
@@ -169,6 +185,19 @@ macro_rules! features {
             }
         }
     };
+}
+
+/// A job's features as a kernel with these parts sees them. Without the part that implements it, a feature is off, and
+/// the compiler removes its code.
+#[derive(Clone, Copy)]
+pub struct KernelFeatures<'f, const PARTS: u32>(&'f Features);
+
+impl Features {
+    /// The features in a kernel with the parts `PARTS`.
+    #[inline(always)]
+    pub fn in_kernel<const PARTS: u32>(&self) -> KernelFeatures<'_, PARTS> {
+        KernelFeatures(self)
+    }
 }
 
 features! {
@@ -227,9 +256,9 @@ features! {
     hemisphere: bool [off false, part RULES] = job.rules().diffuse == Diffuse::Hemisphere;
     /// The reflectance depends on the picture strip.
     reflectance_strips: bool [off false, part RULES] = job.rules().reflectance_strips;
-    /// Paths may be too long for one dispatch of the GPU, and the threads of a workgroup share its blocks of samples. The
-    /// GPU decides this.
-    aside: bool [off true, general true] = true;
+    /// Paths may be too long for one dispatch: its threads suspend them, and those of a workgroup share its blocks of
+    /// samples. Only the renderer on the GPU knows the length of a dispatch, and clears this where all paths fit.
+    suspends: bool [off true, general true] = true;
     /// What a ray contributes.
     shading: Shading [off Shading::Path, part RULES] = job.rules().shading;
     /// The laws that glass obeys.
@@ -265,9 +294,23 @@ mod tests {
     #[test]
     fn general_kernel_keeps_sample_features() {
         let own = Features { specks: true, surface: SurfaceRule::Book, ..Features::default() };
-        let special = Features { lambertian: false, few_spheres: true, opaque_count: 3, aside: false, ..own };
+        let special =
+            Features { lambertian: false, few_spheres: true, opaque_count: 3, suspends: false, ..own };
         assert_eq!(special.generalised(), own);
         let hemisphere = Features { hemisphere: true, hierarchy: true, lens: false, ..own };
         assert_eq!(hemisphere.generalised(), Features { lens: true, ..hemisphere });
+    }
+
+    #[test]
+    fn feature_without_its_part_is_off() {
+        let own =
+            Features { specks: true, surface: SurfaceRule::Book, opaque_count: 3, ..Features::default() };
+        let without = own.in_kernel::<{ parts::GLASS }>();
+        assert_eq!(
+            (without.specks(), without.surface(), without.opaque_count()),
+            (false, SurfaceRule::Exact, 3)
+        );
+        let with = own.in_kernel::<{ parts::EXTREMES | parts::RULES }>();
+        assert_eq!((with.specks(), with.surface(), with.opaque_count()), (true, SurfaceRule::Book, 3));
     }
 }

@@ -22,7 +22,7 @@ pub mod tags;
 
 pub use constants::*;
 pub use features::{Features, SortedSpheres, parts};
-pub use packed::{GpuAside, GpuRecordHead, GpuRecordedRay, word_count};
+pub use packed::{GpuRecordHead, GpuRecordedRay, GpuSuspendedPath, word_count};
 pub use real::Real;
 pub use record::{Columns, Field, Record, Shared, words_of};
 pub use records::*;

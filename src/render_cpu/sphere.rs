@@ -3,7 +3,7 @@
 //! Twin: shaders/sphere.wgsl
 
 use super::lanes::{Float, Key, Lanes, Mask, Unsigned, V3, Wide, WideU, is_idle, load3, splat3};
-use crate::kernel::{AnchoredSphere, Roots};
+use crate::kernel::{AnchoredSphere, Real, Roots};
 pub use crate::kernel::{EYE, NONE};
 
 /// Rays being traced. Directions have length 1.
@@ -187,18 +187,20 @@ pub fn nearest_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> Cand
     nearest_end(rays, sphere.number, chord(l, rays, sphere))
 }
 
-/// Distance to a sphere of a hierarchy, given as centre and squared radius, which is negative if only the nearer root
-/// counts. Of two spheres at the same place, a ray that leaves one must not meet the far side of the other.
+/// Whether only the nearer root of a sphere of a hierarchy counts: its squared radius is negative.
+#[inline(always)]
+fn has_one_root<R: Real>(sphere: &[R; 4]) -> bool {
+    sphere[3] < R::default()
+}
+
+/// Distance to a sphere of a hierarchy, given as centre and squared radius. Of two spheres at the same place, a ray that
+/// leaves one must not meet the far side of the other.
 #[inline(always)]
 pub fn signed_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &[L::Real; 4], number: L::U) -> Candidate<L> {
     let signed = Spheres::splat(l, *sphere, number);
     // What both kinds share comes before the jump, so that the broadcasts are memory operands.
     let chord = chord(l, rays, &Spheres { radius2: signed.radius2.abs(), ..signed });
-    if sphere[3] < L::Real::default() {
-        near_end(rays, number, chord)
-    } else {
-        nearest_end(rays, number, chord)
-    }
+    if has_one_root(sphere) { near_end(rays, number, chord) } else { nearest_end(rays, number, chord) }
 }
 
 /// Distance to the nearer end of a [`chord`].

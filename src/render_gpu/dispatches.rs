@@ -2,9 +2,9 @@
 
 use super::device::Gpu;
 use super::failed;
-use super::layout::{GpuAside, GpuBlock, GpuDispatch, WORKGROUP_SIZE};
+use super::layout::{GpuBlock, GpuDispatch, GpuSuspendedPath, WORKGROUP_SIZE};
 use super::readback::{DispatchResult, Receipt};
-use super::scene::{TURN_LIMIT, turns_over_lists};
+use super::scene::{ITERATION_LIMIT, iterations_over_lists};
 use super::schedule::Budget;
 use crate::job::render::RenderError;
 use crate::kernel::Features;
@@ -20,11 +20,11 @@ const QUEUE_DEPTH: usize = 2;
 /// Most workgroups along one axis of a dispatch; WebGPU allows 65,535.
 const GROUPS_ACROSS: u32 = 32_768;
 
-/// Most threads in a dispatch; each can put its path aside, in [`ASIDE_SIZE`] bytes.
+/// Most threads in a dispatch; each can suspend its path, in [`SUSPENDED_SIZE`] bytes.
 const THREAD_LIMIT: u64 = 1 << 20;
 
-/// Bytes in which a thread puts its path aside.
-const ASIDE_SIZE: u64 = size_of::<GpuAside>() as u64;
+/// Bytes of a suspended path.
+const SUSPENDED_SIZE: u64 = size_of::<GpuSuspendedPath>() as u64;
 
 /// Factor of the target time on a software adapter. Mesa's llvmpipe compiles a kernel anew for each dispatch, which takes
 /// about 6 ms, and keeps the memory: .7 MB for each of the book's last picture (Mesa 22.3).
@@ -82,8 +82,8 @@ struct UnderWay {
 /// The buffers of one dispatch in flight.
 struct Slot {
     receipt: Receipt,
-    aside: wgpu::Buffer,
-    /// Group 2: the buffer for paths that are put aside.
+    suspended: wgpu::Buffer,
+    /// Group 2: the buffer for suspended paths.
     group: wgpu::BindGroup,
     /// Whether the buffer contains paths that are no longer needed.
     is_littered: bool,
@@ -91,16 +91,16 @@ struct Slot {
 
 impl Slot {
     fn new(gpu: &Gpu, size: u64) -> Result<Self, String> {
-        let (aside, group) = storage_of_aside(gpu, size)?;
-        Ok(Slot { receipt: Receipt::new(gpu)?, aside, group, is_littered: false })
+        let (suspended, group) = suspended_storage(gpu, size)?;
+        Ok(Slot { receipt: Receipt::new(gpu)?, suspended, group, is_littered: false })
     }
 }
 
-fn storage_of_aside(gpu: &Gpu, size: u64) -> Result<(wgpu::Buffer, wgpu::BindGroup), String> {
+fn suspended_storage(gpu: &Gpu, size: u64) -> Result<(wgpu::Buffer, wgpu::BindGroup), String> {
     let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
-    let aside = gpu.buffer("paths put aside", size, usage)?;
-    let group = gpu.bind(&gpu.layouts.words, &[&aside]);
-    Ok((aside, group))
+    let suspended = gpu.buffer("suspended paths", size, usage)?;
+    let group = gpu.bind(&gpu.layouts.words, &[&suspended]);
+    Ok((suspended, group))
 }
 
 /// The dispatches in flight, and what was learnt from completed ones.
@@ -112,7 +112,7 @@ pub(super) struct Dispatches {
     budgets: HashMap<Features, Budget>,
     target: Duration,
     /// Limit on a thread's loop turns, as the adapter counts them.
-    turn_limit: u32,
+    iteration_limit: u32,
     /// How often samples were missing.
     pub(super) caution: u32,
     /// Description of the missing samples, if needed samples are missing.
@@ -126,15 +126,15 @@ pub(super) struct Dispatches {
 impl Dispatches {
     /// # Errors
     /// If the device runs out of memory.
-    pub(super) fn new(gpu: &Gpu, target: Duration, turn_limit: Option<u32>) -> Result<Self, String> {
+    pub(super) fn new(gpu: &Gpu, target: Duration, iteration_limit: Option<u32>) -> Result<Self, String> {
         let target = if gpu.adapter.is_software { SOFTWARE_FACTOR * target } else { target };
         Ok(Dispatches {
-            slots: (0..QUEUE_DEPTH).map(|_| Slot::new(gpu, ASIDE_SIZE)).collect::<Result<_, _>>()?,
+            slots: (0..QUEUE_DEPTH).map(|_| Slot::new(gpu, SUSPENDED_SIZE)).collect::<Result<_, _>>()?,
             under_way: VecDeque::new(),
             last_done: Instant::now(),
             budgets: HashMap::new(),
             target,
-            turn_limit: turn_limit.unwrap_or(TURN_LIMIT / gpu.adapter.threads_in_step()),
+            iteration_limit: iteration_limit.unwrap_or(ITERATION_LIMIT / gpu.adapter.threads_in_step()),
             caution: 0,
             shortfall: None,
             count: 0,
@@ -162,17 +162,18 @@ impl Dispatches {
     }
 
     /// Limit on a thread's loop turns in one dispatch.
-    pub(super) fn turn_limit(&self, kernel: &Features) -> u32 {
-        let shift = if kernel.aside { CAUTION_SHIFT * self.caution } else { 0 };
-        (self.turn_limit >> shift).max(1)
+    pub(super) fn iteration_limit(&self, kernel: &Features) -> u32 {
+        let shift = if kernel.suspends { CAUTION_SHIFT * self.caution } else { 0 };
+        (self.iteration_limit >> shift).max(1)
     }
 
-    /// Samples per pixel that are sure to fit one dispatch however long their paths are, so that none are put aside.
+    /// Samples per pixel that are sure to fit one dispatch however long their paths are, so that none is suspended.
     /// `None` if that is unknown or not even one sample is sure to fit.
     pub(super) fn whole_samples(&self, kernel: &Features, prepared: &PreparedScene<f32>) -> Option<u64> {
         // A path may take one turn without a ray at its end, and one turn precedes the first path.
-        let turns = u64::from(prepared.settings.max_depth) * (1 + turns_over_lists(kernel, prepared)) + 1;
-        let samples = u64::from(self.turn_limit - 1) / turns;
+        let turns =
+            u64::from(prepared.settings.max_depth) * (1 + iterations_over_lists(kernel, prepared)) + 1;
+        let samples = u64::from(self.iteration_limit - 1) / turns;
         (!kernel.hierarchy && samples > 0).then_some(samples)
     }
 
@@ -181,11 +182,11 @@ impl Dispatches {
     /// # Errors
     /// If the device runs out of memory.
     pub(super) fn make_room(&mut self, gpu: &Gpu, threads: u64, binding_limit: u64) -> Result<(), String> {
-        let size = threads.min(THREAD_LIMIT).min(binding_limit / ASIDE_SIZE) * ASIDE_SIZE;
+        let size = threads.min(THREAD_LIMIT).min(binding_limit / SUSPENDED_SIZE) * SUSPENDED_SIZE;
         for slot in &mut self.slots {
-            if slot.aside.size() < size {
+            if slot.suspended.size() < size {
                 // The receipt may belong to a dispatch in flight.
-                (slot.aside, slot.group) = storage_of_aside(gpu, size)?;
+                (slot.suspended, slot.group) = suspended_storage(gpu, size)?;
             }
         }
         Ok(())
@@ -193,8 +194,8 @@ impl Dispatches {
 
     /// Most tiles in a dispatch.
     pub(super) fn tile_limit(&self) -> u64 {
-        let sizes = self.slots.iter().map(|slot| slot.aside.size());
-        (sizes.min().unwrap_or_default() / (ASIDE_SIZE * u64::from(WORKGROUP_SIZE))).max(1)
+        let sizes = self.slots.iter().map(|slot| slot.suspended.size());
+        (sizes.min().unwrap_or_default() / (SUSPENDED_SIZE * u64::from(WORKGROUP_SIZE))).max(1)
     }
 
     /// Marks the film of all dispatches in flight as no longer needed.
@@ -211,12 +212,12 @@ impl Dispatches {
         dispatch: BoundDispatch,
         finished: u64,
     ) -> Result<(), String> {
-        let Slot { receipt, aside, group, is_littered } = &mut self.slots[slot];
+        let Slot { receipt, suspended, group, is_littered } = &mut self.slots[slot];
         gpu.queue.write_buffer(&dispatch.blocks_buffer, 0, bytemuck::cast_slice(&dispatch.blocks));
         gpu.queue.write_buffer(&dispatch.order_buffer, 0, bytemuck::bytes_of(&dispatch.order));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         if *is_littered {
-            encoder.clear_buffer(aside, 0, None);
+            encoder.clear_buffer(suspended, 0, None);
             *is_littered = false;
         }
         receipt.begin(&mut encoder, &dispatch.counters);
@@ -257,7 +258,7 @@ impl Dispatches {
         gpu.faults.check()
     }
 
-    /// Waits for the oldest dispatch and learns from its time. If threads have put paths aside, submits it again.
+    /// Waits for the oldest dispatch and learns from its time. If threads have suspended paths, submits it again.
     fn finish(&mut self, gpu: &Gpu, cancel: Option<&AtomicBool>) -> Result<(), Broken> {
         let Some(oldest) = self.under_way.front() else { return Ok(()) };
         if !gpu.wait_unless(&oldest.submission, cancel).map_err(failed)? {
@@ -281,7 +282,7 @@ impl Dispatches {
         if result.counters.stuck > 0 {
             return Err(failed(stuck(result.counters.stuck)).into());
         }
-        if result.counters.unfinished > 0 && done.dispatch.kernel.aside {
+        if result.counters.unfinished > 0 && done.dispatch.kernel.suspends {
             done.dispatch.order.resumes = 1;
             self.submit(gpu, done.slot, done.dispatch, done.finished).map_err(failed)?;
         } else if done.finished != done.dispatch.samples {
@@ -353,7 +354,7 @@ mod tests {
 
     #[test]
     fn each_step_of_caution_makes_dispatches_eight_times_shorter() {
-        let turns = |turn_limit: u32, aside: bool| {
+        let turns = |iteration_limit: u32, suspends: bool| {
             [0, 1, 2, 3].map(|caution| {
                 let dispatches = Dispatches {
                     slots: Vec::new(),
@@ -361,18 +362,18 @@ mod tests {
                     last_done: Instant::now(),
                     budgets: HashMap::new(),
                     target: Duration::ZERO,
-                    turn_limit,
+                    iteration_limit,
                     caution,
                     shortfall: None,
                     count: 0,
                     time: Duration::ZERO,
                 };
-                dispatches.turn_limit(&Features { aside, ..Features::default() })
+                dispatches.iteration_limit(&Features { suspends, ..Features::default() })
             })
         };
         assert_eq!(turns(5120, true), [5120, 640, 80, 10]);
         assert_eq!(turns(100, true), [100, 12, 1, 1]);
-        // A kernel that cannot put paths aside has to trace them to their ends.
+        // A kernel that cannot suspend paths has to trace them to their ends.
         assert_eq!(turns(5120, false), [5120; 4]);
     }
 

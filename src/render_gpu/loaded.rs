@@ -5,7 +5,7 @@ use super::kernel::Kernel;
 use super::layout::{GpuJob, WORKGROUP_SIZE, tile_size};
 use super::options::InjectionPoint;
 use super::scene::SceneData;
-use super::scene::{TURN_LIMIT, turns_over_lists};
+use super::scene::{ITERATION_LIMIT, iterations_over_lists};
 use super::shader_source::EntryPoint;
 use super::{GpuRenderer, failed};
 use crate::job::render::{RenderError, RenderJob};
@@ -123,15 +123,15 @@ impl GpuRenderer {
     fn features(&self, prepared: &PreparedScene<f32>) -> Features {
         let needed = prepared.features;
         let features = if self.options.specialise { needed } else { needed.generalised() };
-        Features { aside: self.dispatches.whole_samples(&features, prepared).is_none(), ..features }
+        Features { suspends: self.dispatches.whole_samples(&features, prepared).is_none(), ..features }
     }
 
     /// Rejects lists that are longer than the driver's loops allow.
     fn check_lists(&self, features: &Features, prepared: &PreparedScene<f32>) -> Result<(), String> {
-        let turns = turns_over_lists(features, prepared);
-        if self.gpu.adapter.threads_in_step() > 1 && turns >= u64::from(TURN_LIMIT) {
+        let turns = iterations_over_lists(features, prepared);
+        if self.gpu.adapter.threads_in_step() > 1 && turns >= u64::from(ITERATION_LIMIT) {
             return Err(format!(
-                "each ray is tested against {turns} spheres, but loops of {} end after {TURN_LIMIT} turns; render this scene on the CPU",
+                "each ray is tested against {turns} spheres, but loops of {} end after {ITERATION_LIMIT} turns; render this scene on the CPU",
                 self.gpu.adapter.name
             ));
         }

@@ -25,7 +25,7 @@ pub use adapter::{AdapterInfo, adapters};
 pub use options::{
     BATCH_TARGET, Fault, FaultInjection, GpuError, GpuOptions, GpuReport, INTERACTIVE_TARGET, InjectionPoint,
 };
-pub use scene::{Exported, SHARED_BLOCK, TURN_LIMIT};
+pub use scene::{Exported, ITERATION_LIMIT, SHARED_BLOCK};
 
 use crate::film::Film;
 use crate::job::render::{BackendInfo, KernelInfo, RenderError, RenderJob, Renderer, Stats};
@@ -63,7 +63,7 @@ impl GpuRenderer {
     /// [`GpuError`], with the available adapters.
     pub fn new(options: GpuOptions) -> Result<Self, GpuError> {
         let gpu = Gpu::open(options.adapter.as_deref(), options.allow_software, options.patience)?;
-        let dispatches = Dispatches::new(&gpu, options.dispatch_target, options.turn_limit)
+        let dispatches = Dispatches::new(&gpu, options.dispatch_target, options.iteration_limit)
             .map_err(|reason| GpuError::Device { adapter: gpu.adapter.to_string(), reason })?;
         let software = |adapter: &AdapterInfo| {
             format!("{adapter} is not a GPU: it runs on the processor and is slower than the CPU backend")

@@ -67,7 +67,7 @@ pub struct GpuOptions {
     /// Samples per pixel in a dispatch, for measurements; by default as many as the target time allows.
     pub samples_per_dispatch: Option<u64>,
     /// Loop turns after which a thread puts its path aside, for tests; by default as many as are safe.
-    pub turn_limit: Option<u32>,
+    pub iteration_limit: Option<u32>,
     /// Most bytes of a film on the device at once; by default the adapter's binding limit.
     pub film_limit: Option<u64>,
     /// How long to wait for the device before giving it up.
@@ -84,7 +84,7 @@ impl Default for GpuOptions {
             dispatch_target: BATCH_TARGET,
             specialise: true,
             samples_per_dispatch: None,
-            turn_limit: None,
+            iteration_limit: None,
             film_limit: None,
             patience: PATIENCE,
             injection: None,

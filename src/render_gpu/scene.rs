@@ -78,14 +78,14 @@ fn in_order<T: Copy>(order: &[u32], items: &[T]) -> Vec<T> {
 ///
 /// This is half of the smallest limit known. llvmpipe ends every loop once the loops of a thread have taken 65,535
 /// turns together; it runs 8 threads in step, and turns that two of them take count twice.
-pub const TURN_LIMIT: u32 = 1 << 15;
+pub const ITERATION_LIMIT: u32 = 1 << 15;
 
 /// Most samples in a block where the threads of a workgroup share its blocks. A thread that finds none left waits no
 /// longer than the others need for a block; each one costs the time of some rays.
 pub const SHARED_BLOCK: u32 = 16;
 
-/// Loop turns over lists for one ray. Twin: `turns_over_lists` in shaders/path.wgsl.
-pub fn turns_over_lists(features: &Features, prepared: &PreparedScene<f32>) -> u64 {
+/// Loop turns over lists for one ray. Twin: `iterations_over_lists` in shaders/path.wgsl.
+pub fn iterations_over_lists(features: &Features, prepared: &PreparedScene<f32>) -> u64 {
     let is_in_hierarchy = features.hierarchy && features.surface == SurfaceRule::Exact;
     let listed = if is_in_hierarchy { 0 } else { prepared.opaque.len() + prepared.two_root.len() };
     (prepared.anchored.len() + listed) as u64
@@ -101,7 +101,7 @@ pub struct Exported {
     /// The index in the scene of each shading record's sphere.
     pub scene_index: Vec<u32>,
     /// Loop turns over lists for one ray.
-    pub turns_over_lists: u64,
+    pub iterations_over_lists: u64,
     /// Most samples in a block: a power of two.
     pub block_limit: u32,
     /// The origin of the buffers' coordinates, in scene coordinates.
@@ -117,7 +117,7 @@ impl Exported {
         Exported {
             features,
             buffers: data.buffers(&prepared).map(|(_, bytes)| bytes.into_owned()),
-            turns_over_lists: turns_over_lists(&features, &prepared),
+            iterations_over_lists: iterations_over_lists(&features, &prepared),
             block_limit: prepared.block_limit,
             origin: prepared.origin,
             scene_index: data.scene_index,
@@ -162,7 +162,7 @@ mod tests {
             recipe.rules = Rules { surface, ..recipe.rules };
             let prepared = PreparedScene::<f32>::new(&recipe.job().unwrap());
             let listed = prepared.opaque.len() + prepared.two_root.len();
-            let turns = turns_over_lists(&prepared.features, &prepared) as usize;
+            let turns = iterations_over_lists(&prepared.features, &prepared) as usize;
             (turns - prepared.anchored.len(), listed)
         };
         assert_eq!(turns("field:60", SurfaceRule::Exact).0, 0);

@@ -42,7 +42,7 @@ impl EntryPoint {
 }
 
 /// The files with functions and bindings that all entry points share.
-const SHARED: [&str; 10] = [
+const SHARED: [&str; 11] = [
     include_str!("../../shaders/lanes.wgsl"),
     include_str!("../../shaders/rng.wgsl"),
     include_str!("../../shaders/camera.wgsl"),
@@ -51,7 +51,8 @@ const SHARED: [&str; 10] = [
     include_str!("../../shaders/bindings.wgsl"),
     include_str!("../../shaders/material.wgsl"),
     include_str!("../../shaders/path.wgsl"),
-    include_str!("../../shaders/aside.wgsl"),
+    include_str!("../../shaders/rules.wgsl"),
+    include_str!("../../shaders/suspend.wgsl"),
     include_str!("../../shaders/record.wgsl"),
 ];
 

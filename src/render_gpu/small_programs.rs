@@ -7,7 +7,7 @@ use super::layout::{GpuDispatch, WORKGROUP_SIZE};
 use super::loaded::Loaded;
 use super::schedule::Blocks;
 use super::shader_source::{EntryPoint, Probe};
-use super::{GpuRenderer, TURN_LIMIT, failed, readback, record};
+use super::{GpuRenderer, ITERATION_LIMIT, failed, readback, record};
 use crate::film::Film;
 use crate::job::render::{RenderError, RenderJob};
 use crate::kernel::path_record::PathRecord;
@@ -83,9 +83,9 @@ impl GpuRenderer {
                 Blocks::of_range(index..index + 1, settings, loaded.scene.prepared.block_limit).take(1);
             let mut order = GpuDispatch {
                 block_count: blocks.len() as u32,
-                turn_limit: TURN_LIMIT,
+                iteration_limit: ITERATION_LIMIT,
                 row_count: buffers.slabs.first().map_or(0, |slab| slab.row_count),
-                first_aside: record::first_aside(settings.max_depth) as u32,
+                first_suspended: record::first_suspended(settings.max_depth) as u32,
                 ..GpuDispatch::default()
             };
             this.gpu.queue.write_buffer(&buffers.blocks, 0, bytemuck::cast_slice(&blocks));
@@ -94,7 +94,7 @@ impl GpuRenderer {
             loop {
                 this.gpu.queue.write_buffer(&buffers.order, 0, bytemuck::bytes_of(&order));
                 words = this.run(loaded, &buffers, &kernel, &words, 1)?;
-                match record::is_aside(&words, settings.max_depth, &mut rays) {
+                match record::is_suspended(&words, settings.max_depth, &mut rays) {
                     Some(true) => order.resumes = 1,
                     Some(false) => {
                         let (index, origin) = (&loaded.scene.scene_index, loaded.scene.prepared.origin);

@@ -35,10 +35,10 @@ impl GpuRenderer {
             let Slab { first_row, row_count, .. } = loaded.film.slabs[slab];
             let area = [settings.width, row_count];
             let most = self.dispatches.whole_samples(&loaded.features, &loaded.scene.prepared);
-            let most = most.filter(|_| !loaded.features.aside).unwrap_or(u64::MAX);
+            let most = most.filter(|_| !loaded.features.suspends).unwrap_or(u64::MAX);
             let tiles = settings.width.div_ceil(tile[0]) * row_count.div_ceil(tile[1]);
             let limit = loaded.scene.prepared.block_limit;
-            let limit = if loaded.features.aside { limit.min(SHARED_BLOCK) } else { limit };
+            let limit = if loaded.features.suspends { limit.min(SHARED_BLOCK) } else { limit };
             let mut left = Blocks::of_range(range.clone(), &settings, limit);
             loop {
                 let affordable = self.dispatches.budget(&loaded.features).paths();
@@ -63,7 +63,7 @@ impl GpuRenderer {
                         first_tile,
                         tile_count,
                         block_count: blocks.len() as u32,
-                        turn_limit: self.dispatches.turn_limit(&loaded.features),
+                        iteration_limit: self.dispatches.iteration_limit(&loaded.features),
                         first_row,
                         row_count,
                         ..GpuDispatch::default()

@@ -6,7 +6,7 @@ use glam::DVec3;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use weekender::job::render::{RenderError, RenderJob, Renderer, SamplerKind, Stats};
-use weekender::render_gpu::{Fault, FaultInjection, GpuOptions, InjectionPoint, TURN_LIMIT};
+use weekender::render_gpu::{Fault, FaultInjection, GpuOptions, ITERATION_LIMIT, InjectionPoint};
 use weekender::scene::builtin::{BOOK_CAMERA, BuiltinScene, book};
 use weekender::scene::{Camera, Material, Scene, Sky};
 use weekender::stages::{Rules, SurfaceRule};
@@ -17,7 +17,7 @@ fn few_pixels_with_many_samples() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [4, 4], 50, SamplerKind::Sobol, true);
-    let samples = 2 * u64::from(TURN_LIMIT);
+    let samples = 2 * u64::from(ITERATION_LIMIT);
     let [on_gpu, on_cpu] =
         [&mut gpu as &mut dyn Renderer, &mut cpu()].map(|r| picture_mean(&rendered(r, &job, samples)));
     assert!((on_gpu - on_cpu).abs() < 1e-4, "{on_gpu} {on_cpu}");
@@ -54,7 +54,7 @@ fn putting_paths_aside_keeps_film() {
         }
     }
     let Some(mut at_once) = gpu(GpuOptions::default()) else { return };
-    let mut in_turns = gpu(GpuOptions { turn_limit: Some(1), ..GpuOptions::default() }).unwrap();
+    let mut in_turns = gpu(GpuOptions { iteration_limit: Some(1), ..GpuOptions::default() }).unwrap();
     for (scene, camera) in [three, (book(), BOOK_CAMERA), steep] {
         for (sampler, halves) in [(SamplerKind::Sobol, true), (SamplerKind::Independent, false)] {
             let job = job_of(&scene, camera, [20, 11], 30, sampler, halves);
@@ -68,7 +68,8 @@ fn putting_paths_aside_keeps_film() {
 /// A new picture does not resume the paths that an abandoned one put aside.
 #[test]
 fn abandoned_paths_are_not_resumed() {
-    let options = GpuOptions { turn_limit: Some(8), samples_per_dispatch: Some(1), ..GpuOptions::default() };
+    let options =
+        GpuOptions { iteration_limit: Some(8), samples_per_dispatch: Some(1), ..GpuOptions::default() };
     let Some(mut used) = gpu(options.clone()) else { return };
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [5, 3], 30, SamplerKind::Independent, false);
@@ -133,7 +134,7 @@ fn long_lists_are_complete_or_refused() {
     let [on_gpu, on_cpu] =
         [&mut gpu as &mut dyn Renderer, &mut cpu()].map(|r| picture_mean(&rendered(r, &job, 4)));
     assert!((on_gpu - on_cpu).abs() < 0.05, "{on_gpu} {on_cpu}");
-    let job = list(TURN_LIMIT);
+    let job = list(ITERATION_LIMIT);
     let outcome = gpu.accumulate(&job, 0..1, &mut job.new_film(), &go_on());
     if gpu.adapter().is_software {
         let error = outcome.unwrap_err().to_string();

@@ -19,7 +19,7 @@ use weekender::kernel::sampling::{GOLDEN_RATIO, LENS_BLOCK, mix32, pcg4d};
 use weekender::kernel::{AnchoredSphere, CameraTable, PROBE_STRIDE};
 use weekender::render_cpu::camera::{lens_ray, pinhole_ray, screen};
 use weekender::render_cpu::lanes::{Scalar, Single, V3, Wide, Word};
-use weekender::render_cpu::material::{Surface, incidence_of, reflectance, refracted, scatter};
+use weekender::render_cpu::material::{Material, incidence_of, reflectance, refracted, scatter};
 use weekender::render_cpu::sphere::{
     NONE, Rays, Spheres, anchored_root, anchored_surface_point, book_root, near_root, nearest_root,
     speck_surface_point, surface_point,
@@ -283,12 +283,12 @@ fn scattering() {
             words
         }) {
             let [weight, refraction_index, inverse_index, f0] = [0, 1, 2, 3].map(|i| number(&input, i));
-            let surface: Surface<L> = Surface { weight, refraction_index, inverse_index, f0 };
+            let material: Material<L> = Material { weight, refraction_index, inverse_index, f0 };
             let (cosine, coin) = (number(&input, 13), number(&input, 15));
             let (d, n, unit) = (vector(&input, 4), vector(&input, 7), vector(&input, 10));
             let front = input[14] != 0;
             let sent =
-                scatter::<L, true>(L, &surface, laws, d, n, &incidence_of(L, cosine), front, unit, coin);
+                scatter::<L, true>(L, &material, laws, d, n, &incidence_of(L, cosine), front, unit, coin);
             let flags = u32::from(sent.refracts) | u32::from(sent.is_metal) << 1;
             if output[3] != flags {
                 // The random number is within rounding of the reflectance.

@@ -206,7 +206,7 @@ page = await opened(remember, () => {
   const { parse } = JSON;
   JSON.parse = (text) => {
     const given = parse(text);
-    if (given.constants) given.constants.turn_limit = 8 * 60;
+    if (given.constants) given.constants.iteration_limit = 8 * 60;
     return given;
   };
 });

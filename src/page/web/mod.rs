@@ -8,9 +8,9 @@ mod sliders;
 
 use crate::film::PixelSum;
 use crate::job::render::{RenderJob, RenderSettings};
-use crate::kernel::{GpuAside, Tag, WORKGROUP_SIZE, records};
+use crate::kernel::{GpuSuspendedPath, Tag, WORKGROUP_SIZE, records};
 use crate::render_gpu::shader_source::{EntryPoint, shared};
-use crate::render_gpu::{Exported, TURN_LIMIT};
+use crate::render_gpu::{Exported, ITERATION_LIMIT};
 use crate::stages::Stage;
 use anyhow::{Context, Result};
 use base64::Engine;
@@ -36,9 +36,9 @@ pub fn live_data<'a>(stages: impl IntoIterator<Item = &'a Stage>) -> Result<Stri
         },
         "constants": {
             "workgroup_size": WORKGROUP_SIZE,
-            "aside_size": size_of::<GpuAside>(),
+            "suspended_size": size_of::<GpuSuspendedPath>(),
             "pixel_size": size_of::<PixelSum>(),
-            "turn_limit": TURN_LIMIT,
+            "iteration_limit": ITERATION_LIMIT,
         },
         "records": records::layouts().into_iter().map(record).collect::<Map<_, _>>(),
         "stages": stages.collect::<Result<Map<_, _>>>()?,
@@ -83,7 +83,7 @@ fn stage_data(stage: &Stage) -> Result<Value> {
         "origin": exported.origin.to_array(),
         "sliders": sliders(&job, recipe.samples_per_pixel, &exported.scene_index),
         // Loop turns over lists for one ray.
-        "turns_over_lists": exported.turns_over_lists,
+        "iterations_over_lists": exported.iterations_over_lists,
         // Most samples per block.
         "block_limit": exported.block_limit,
         "overrides": overrides.collect::<Map<_, _>>(),
