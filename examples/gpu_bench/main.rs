@@ -17,7 +17,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 use weekender::backends::BackendChoice;
 use weekender::job::recipe::Recipe;
-use weekender::job::render::{RenderJob, RenderSettings, Renderer};
+use weekender::job::render::{Control, RenderJob, RenderSettings, Renderer};
 use weekender::kernel::parts;
 use weekender::numbers::statistics;
 use weekender::prepared::PreparedScene;
@@ -173,12 +173,12 @@ fn passes(arguments: &[String]) -> anyhow::Result<()> {
             for pass in 0..count {
                 let range = pass * samples..(pass + 1) * samples;
                 if stays == 1 {
-                    renderer.advance(&job, range, &mut film, &go_on)?;
+                    renderer.advance(&job, range, &mut film, &Control::deferring(&go_on))?;
                 } else {
                     renderer.accumulate(&job, range, &mut film, &go_on)?;
                 }
             }
-            renderer.collect(&mut film)?;
+            renderer.finish(&mut film)?;
             anyhow::ensure!(film.sample_count() == count * samples, "samples are missing");
             let report = renderer.report();
             films[stays] = report.films - before.films;

@@ -71,7 +71,7 @@ impl AdapterInfo {
         }
     }
 
-    /// Number of threads that share a limit on loop turns: software counts the turns of all threads that run in step.
+    /// Number of threads that share a limit on iterations: software counts those of all threads that run in step.
     /// GPUs have no known limit.
     pub fn threads_in_step(&self) -> u32 {
         // Some adapters do not report a subgroup size; 8 threads fit a processor's registers.

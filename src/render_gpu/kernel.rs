@@ -156,8 +156,8 @@ fn compiled(gpu: &Gpu, (entry_point, features, probe): Key, modules: &Modules) -
 fn module_of(gpu: &Gpu, described: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::ShaderModule {
     let checks = wgpu::ShaderRuntimeChecks { force_loop_bounding: false, ..Default::default() };
     // SAFETY: all checks but those of loops stay, and every loop of the shaders ends. The loop over a thread's rays counts
-    // its turns up to `iteration_limit`, the traversal its nodes up to `node_count`, and the loop over a leaf clears one of 24
-    // bits per turn. All others count up to a number that does not change.
+    // its iterations up to `iteration_limit`, the traversal its nodes up to `node_count`, and the loop over a leaf clears one of 24
+    // bits per iteration. All others count up to a number that does not change.
     unsafe { gpu.device.create_shader_module_trusted(described, checks) }
 }
 

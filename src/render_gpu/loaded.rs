@@ -46,7 +46,7 @@ impl GpuRenderer {
         match self.loaded.take() {
             Some(loaded) if loaded.job == *job => Ok(loaded),
             old => {
-                self.dispatches.abandon();
+                self.dispatches.discard();
                 self.inject(InjectionPoint::Prepare, self.preparations);
                 self.preparations += 1;
                 self.built(job, old, cancel)
@@ -128,17 +128,17 @@ impl GpuRenderer {
 
     /// Rejects lists that are longer than the driver's loops allow.
     fn check_lists(&self, features: &Features, prepared: &PreparedScene<f32>) -> Result<(), String> {
-        let turns = iterations_over_lists(features, prepared);
-        if self.gpu.adapter.threads_in_step() > 1 && turns >= u64::from(ITERATION_LIMIT) {
+        let iterations = iterations_over_lists(features, prepared);
+        if self.gpu.adapter.threads_in_step() > 1 && iterations >= u64::from(ITERATION_LIMIT) {
             return Err(format!(
-                "each ray is tested against {turns} spheres, but loops of {} end after {ITERATION_LIMIT} turns; render this scene on the CPU",
+                "each ray is tested against {iterations} spheres, but loops of {} end after {ITERATION_LIMIT} iterations; render this scene on the CPU",
                 self.gpu.adapter.name
             ));
         }
         Ok(())
     }
 
-    /// Allocates storage for the paths that the threads of a picture may put aside.
+    /// Allocates storage for the paths that the threads of a picture may suspend.
     fn make_room(&mut self, job: &RenderJob) -> Result<(), String> {
         let (width, height) = (job.settings().width, job.settings().height);
         let [tile_width, tile_height] = tile_size(width, height);
@@ -205,7 +205,7 @@ impl GpuRenderer {
             return FilmBuffers::new(&self.gpu, job.settings(), limit);
         };
         // Work in flight was abandoned.
-        film.forget(&self.gpu);
+        film.discard(&self.gpu);
         Ok(film)
     }
 }

@@ -8,7 +8,7 @@ use crate::kernel::{GpuRecordHead, GpuRecordedRay, GpuSuspendedPath, NONE, word_
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-/// Number of words before those in which the path is put aside.
+/// Number of words before those of the suspended path.
 pub fn first_suspended(max_depth: u32) -> usize {
     first_of_ray(max_depth as usize)
 }
@@ -25,7 +25,7 @@ pub fn words_for([column, row]: [u32; 2], max_depth: u32) -> Vec<u32> {
     words
 }
 
-/// Returns whether the path was put aside and the shader must continue it; `rays` becomes the number of rays recorded
+/// Returns whether the path was suspended and the shader must resume it; `rays` becomes the number of rays recorded
 /// so far. Returns `None` if the path has not advanced since `rays` were recorded.
 pub fn is_suspended(words: &[u32], max_depth: u32, rays: &mut u32) -> Option<bool> {
     if read::<GpuSuspendedPath>(words, first_suspended(max_depth)).state == 0 {
@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn a_path_that_is_put_aside_is_continued_while_it_advances() {
+    fn suspended_path_resumes_while_it_advances() {
         let mut words = words_for([7, 5], 4);
         assert_eq!((read::<GpuRecordHead>(&words, 0).column, read::<GpuRecordHead>(&words, 0).row), (7, 5));
         let mut rays = 0;

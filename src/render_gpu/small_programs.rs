@@ -37,13 +37,13 @@ impl GpuRenderer {
             let pixels = width as usize * height as usize;
             let sums: Vec<u64> = (0..pixels).flat_map(|i| film.pixel_sum(i).0).collect();
             this.gpu.queue.write_buffer(sums_on_device, 0, bytemuck::cast_slice(&sums));
-            let order = GpuDispatch {
+            let parameters = GpuDispatch {
                 row_count: height,
                 sample_count: film.sample_count().min(u64::from(u32::MAX)) as u32,
                 transfer: transfer.tag(),
                 ..GpuDispatch::default()
             };
-            this.gpu.queue.write_buffer(&buffers.order, 0, bytemuck::bytes_of(&order));
+            this.gpu.queue.write_buffer(&buffers.parameters, 0, bytemuck::bytes_of(&parameters));
             let groups = (pixels as u32).div_ceil(WORKGROUP_SIZE);
             this.run(loaded, &buffers, &kernel, &vec![0; pixels], groups)
         })
@@ -81,7 +81,7 @@ impl GpuRenderer {
             let settings = job.settings();
             let (blocks, _) =
                 Blocks::of_range(index..index + 1, settings, loaded.scene.prepared.block_limit).take(1);
-            let mut order = GpuDispatch {
+            let mut parameters = GpuDispatch {
                 block_count: blocks.len() as u32,
                 iteration_limit: ITERATION_LIMIT,
                 row_count: buffers.slabs.first().map_or(0, |slab| slab.row_count),
@@ -92,10 +92,10 @@ impl GpuRenderer {
             let mut words = record::words_for(pixel, settings.max_depth);
             let mut rays = 0;
             loop {
-                this.gpu.queue.write_buffer(&buffers.order, 0, bytemuck::bytes_of(&order));
+                this.gpu.queue.write_buffer(&buffers.parameters, 0, bytemuck::bytes_of(&parameters));
                 words = this.run(loaded, &buffers, &kernel, &words, 1)?;
                 match record::is_suspended(&words, settings.max_depth, &mut rays) {
-                    Some(true) => order.resumes = 1,
+                    Some(true) => parameters.resumes = 1,
                     Some(false) => {
                         let (index, origin) = (&loaded.scene.scene_index, loaded.scene.prepared.origin);
                         return Ok(record::from_words(&words, settings.max_depth, index, origin));

@@ -1,6 +1,6 @@
-//! Tracing a range of samples: splits it into dispatches, sends for the film, and traces missing samples again.
+//! Traces a range of samples: splits it into dispatches, reads the film back, and traces missing samples again.
 
-use super::dispatches::{BoundDispatch, Broken, CAUTION_LIMIT, CAUTION_SHIFT};
+use super::dispatches::{BoundDispatch, CAUTION_LIMIT, CAUTION_SHIFT, Incomplete};
 use super::film_buffers::Slab;
 use super::layout::{GpuBlock, GpuDispatch, tile_size};
 use super::loaded::Loaded;
@@ -16,15 +16,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 impl GpuRenderer {
-    /// Submits the dispatches of `range`; the last may still be in flight on return. A film that was sent for is added
-    /// to `film` as soon as the device has other work.
+    /// Submits the dispatches of `range`; the last may still be in flight on return. A readback in progress is added to
+    /// `film` as soon as the device has other work.
     pub(super) fn trace_range(
         &mut self,
         loaded: &mut Loaded,
         range: &Range<u64>,
         film: &mut Film,
         cancel: &AtomicBool,
-    ) -> Result<Stats, Broken> {
+    ) -> Result<Stats, Incomplete> {
         loaded.film.check_new(range, film)?;
         self.dispatches.check_whole()?;
         let settings = *loaded.job.settings();
@@ -59,7 +59,7 @@ impl GpuRenderer {
                     let tile_limit =
                         (affordable / (tile_pixels * samples).max(1)).min(self.dispatches.tile_limit());
                     let tile_count = evenly(tiles - first_tile, tile_limit);
-                    let order = GpuDispatch {
+                    let parameters = GpuDispatch {
                         first_tile,
                         tile_count,
                         block_count: blocks.len() as u32,
@@ -73,53 +73,53 @@ impl GpuRenderer {
                         pipeline: loaded.kernel.pipeline.clone(),
                         scene: loaded.scene.group.clone(),
                         film: loaded.film.slabs[slab].group.clone(),
-                        order_buffer: loaded.film.order.clone(),
+                        parameters_buffer: loaded.film.parameters.clone(),
                         blocks_buffer: loaded.film.blocks.clone(),
                         counters: loaded.film.counters.clone(),
                         blocks: Arc::clone(&blocks),
-                        order,
+                        parameters,
                         paths: u64::from(tile_count) * tile_pixels * samples,
                         samples: pixels_within(area, tile, first_tile..first_tile + tile_count) * samples,
                     };
-                    self.send_off(slot, dispatch).map_err(failed)?;
+                    self.submit(slot, dispatch).map_err(failed)?;
                     first_tile += tile_count;
-                    if loaded.film.is_leaving() {
-                        stats.add(&loaded.film.arrive(&self.gpu, film)?);
+                    if loaded.film.is_reading_back() {
+                        stats.add(&loaded.film.finish_readback(&self.gpu, film)?);
                     }
                 }
             }
         }
-        stats.add(&loaded.film.arrive(&self.gpu, film)?);
+        stats.add(&loaded.film.finish_readback(&self.gpu, film)?);
         Ok(stats)
     }
 
     /// Submits a new dispatch, unless an injected fault is due.
-    fn send_off(&mut self, slot: usize, mut dispatch: BoundDispatch) -> Result<(), String> {
+    fn submit(&mut self, slot: usize, mut dispatch: BoundDispatch) -> Result<(), String> {
         let fault = self.inject(InjectionPoint::Dispatch, self.dispatches.count);
         if matches!(fault, Some(Fault::Short | Fault::AlwaysShort)) {
-            dispatch.order.block_count = 0;
+            dispatch.parameters.block_count = 0;
         }
         self.dispatches.submit(&self.gpu, slot, dispatch, 0)
     }
 
-    /// Sends for the film once it is complete.
-    pub(super) fn send_for_film(&mut self, loaded: &mut Loaded) -> Result<(), Broken> {
-        if !loaded.film.is_leaving() {
-            self.inject(InjectionPoint::Fetch, self.fetches);
-            self.fetches += 1;
+    /// Requests a readback of the film, after the dispatches in flight.
+    pub(super) fn read_film_back(&mut self, loaded: &mut Loaded) -> Result<(), Incomplete> {
+        if !loaded.film.is_reading_back() {
+            self.inject(InjectionPoint::Fetch, self.readbacks);
+            self.readbacks += 1;
             self.dispatches.drain(&self.gpu, None)?;
-            loaded.film.leave(&self.gpu);
+            loaded.film.request_readback(&self.gpu);
         }
         Ok(self.gpu.faults.check().map_err(failed)?)
     }
 
     /// Adds everything traced so far to the film.
-    pub(super) fn collect_all(&mut self, loaded: &mut Loaded, film: &mut Film) -> Result<Stats, Broken> {
+    pub(super) fn finish_all(&mut self, loaded: &mut Loaded, film: &mut Film) -> Result<Stats, Incomplete> {
         let mut stats = Stats::default();
-        // A film already on its way comes first.
+        // A readback already in progress comes first.
         while loaded.film.holds_samples() {
-            self.send_for_film(loaded)?;
-            stats.add(&loaded.film.arrive(&self.gpu, film)?);
+            self.read_film_back(loaded)?;
+            stats.add(&loaded.film.finish_readback(&self.gpu, film)?);
         }
         Ok(stats)
     }
@@ -128,7 +128,7 @@ impl GpuRenderer {
     ///
     /// # Errors
     /// If samples are still missing; the film is then unchanged.
-    pub(super) fn trace_again(
+    pub(super) fn retrace(
         &mut self,
         loaded: &mut Loaded,
         mut shortfall: String,
@@ -145,21 +145,21 @@ impl GpuRenderer {
             self.dispatches.caution += 1;
             self.messages
                 .push(format!("{shortfall}; the missing samples are traced again in smaller pieces"));
-            self.forget(loaded);
+            self.discard(loaded);
             let begin = Instant::now();
             let mut stats = Stats::default();
             let outcome = missing.iter().try_for_each(|range| {
                 stats.add(&self.trace_range(loaded, &range, film, cancel)?);
                 self.dispatches.drain(&self.gpu, Some(cancel))?;
-                loaded.film.note(range, begin.elapsed()).map_err(Broken::from)
+                loaded.film.note(range, begin.elapsed()).map_err(Incomplete::from)
             });
-            match outcome.and_then(|()| self.collect_all(loaded, film)) {
-                Ok(collected) => {
-                    stats.add(&collected);
+            match outcome.and_then(|()| self.finish_all(loaded, film)) {
+                Ok(added) => {
+                    stats.add(&added);
                     return Ok(stats);
                 }
-                Err(Broken::Ended(error)) => return Err(error),
-                Err(Broken::Short(reason)) => shortfall = reason,
+                Err(Incomplete::Failed(error)) => return Err(error),
+                Err(Incomplete::Short(reason)) => shortfall = reason,
             }
         }
         Err(failed(format!("{shortfall}; update the graphics driver or render on the CPU")))
