@@ -1,9 +1,9 @@
 //! The dialog about the program.
 
 use super::Outcome;
-use crate::app::facts::Facts;
+use crate::app::commands::facts::Facts;
 use crate::app::model::{adapter, file_url};
-use crate::app::widgets::{Header, fold, hint, tip};
+use crate::app::toolkit::widgets::{Header, fold, hint, tip};
 use crate::system::files::state_directory;
 use crate::system::journal::kept_text;
 use eframe::egui::{self, OpenUrl, RichText, ScrollArea, Ui};

@@ -1,12 +1,12 @@
 //! Dialogs about files: saving, the system's own dialog, and a field for a path where the system has none.
 
 use super::Outcome;
-use crate::app::answers::Answers;
-use crate::app::facts::Facts;
+use crate::app::commands::facts::Facts;
 use crate::app::model::Document;
-use crate::app::status::time;
-use crate::app::theme;
-use crate::app::widgets::{About, FIELD, Number, named, primary, small};
+use crate::app::panels::status::time;
+use crate::app::toolkit::answers::Answers;
+use crate::app::toolkit::theme;
+use crate::app::toolkit::widgets::{About, FIELD, Number, named, primary, small};
 use crate::film::Film;
 use crate::job::output::OutputFormat;
 use crate::job::recipe::plain_name;

@@ -5,12 +5,12 @@ mod files;
 mod help;
 mod palette;
 mod sky;
+pub mod stage_list;
 
 pub use files::{LargeSize, PathField, Purpose, SaveBox, What, default_folder, file_name, samples_wanted};
 
-use super::facts::Facts;
-use super::finder::Finder;
-use super::stage_list;
+use crate::app::commands::facts::Facts;
+use crate::app::toolkit::finder::Finder;
 use eframe::egui::{self, Align2, Color32, Id, Modal, Ui, vec2};
 use std::path::PathBuf;
 

@@ -1,11 +1,11 @@
 //! Finds a command by what it does: type a few words, then press Enter.
 
 use super::Outcome;
-use crate::app::command::{Command, ROWS};
-use crate::app::facts::Facts;
-use crate::app::finder::Finder;
-use crate::app::menu::{line, name_state};
-use crate::app::widgets::{caption, hint};
+use crate::app::commands::facts::Facts;
+use crate::app::commands::table::{Command, ROWS};
+use crate::app::toolkit::finder::Finder;
+use crate::app::toolkit::menu::{line, name_state};
+use crate::app::toolkit::widgets::{caption, hint};
 use crate::measure::stress::shown_cases;
 use crate::stages::Stage;
 use eframe::egui::{Response, RichText, Ui, vec2};

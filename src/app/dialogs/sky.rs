@@ -1,9 +1,9 @@
 //! The dialog for the colours of the sky.
 
 use super::Outcome;
-use crate::app::facts::Facts;
+use crate::app::commands::facts::Facts;
 use crate::app::model::Edit;
-use crate::app::widgets::{About, Header, colour, group, hint};
+use crate::app::toolkit::widgets::{About, Header, colour, group, hint};
 use eframe::egui::Ui;
 
 const HELP: &str = "The sky is the only lamp of the book: what it sends is what lights the scene.";

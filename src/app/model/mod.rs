@@ -1,6 +1,7 @@
 //! The model of the window: the document, the view, the device, and the remembered settings. It does not depend on
 //! widgets or drawing.
 
+pub mod changes;
 mod checked;
 mod command_line;
 pub mod companion;
@@ -8,10 +9,12 @@ pub mod device;
 mod document;
 mod edit;
 mod kept;
+pub mod navigation;
 mod origin;
 mod remembered;
 mod show;
 mod sizing;
+pub mod spheres;
 mod view;
 
 pub use checked::{CheckedScene, stamp_of};

@@ -1,7 +1,7 @@
 //! What the viewport shows: a view of the film, or a comparison with another picture.
 
 use super::{CheckedScene, Document, Kept, KeptList, Origin, Show, Tone};
-use crate::app::subject::Found;
+use crate::app::tracing::subject::Found;
 use crate::denoise::Denoised;
 use crate::job::recipe::Recipe;
 use crate::progressive::{ReferenceMeans, View};

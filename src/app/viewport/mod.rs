@@ -1,19 +1,22 @@
 //! The viewport: the picture, and mouse input on it.
 
+pub mod display;
 mod moving;
 pub mod paint;
+pub mod pixel_values;
 mod placement;
 mod selection;
+pub mod sight;
 
 pub use paint::Pictures;
 pub use placement::Placement;
 
-use super::command::Command;
-use super::facts::Facts;
-use super::menu;
-use super::model::{Document, Mode};
-use super::navigation;
-use super::widgets::compact;
+use crate::app::commands::facts::Facts;
+use crate::app::commands::table::Command;
+use crate::app::model::navigation;
+use crate::app::model::{Document, Mode};
+use crate::app::toolkit::menu;
+use crate::app::toolkit::widgets::compact;
 use crate::scene::Camera;
 use eframe::egui::{self, CursorIcon, PointerButton, Pos2, Rect, Response, Sense, Ui, WidgetInfo, vec2};
 use moving::Moving;

@@ -3,7 +3,7 @@
 use super::placement::Placement;
 use super::{Touch, place_at, point_at};
 use crate::app::model::Document;
-use crate::app::navigation;
+use crate::app::model::navigation;
 use crate::scene::Camera;
 use eframe::egui::{Color32, CursorIcon, PointerButton, Pos2, Rect, Response, Stroke, Ui, Vec2};
 use glam::DVec3;

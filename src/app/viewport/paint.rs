@@ -1,12 +1,12 @@
 //! Draws the viewport: the picture, the second picture, and words over them.
 
+use super::pixel_values::PixelValues;
 use super::placement::Placement;
-use crate::app::facts::Facts;
+use crate::app::commands::facts::Facts;
 use crate::app::model::{Document, Mode, Show};
-use crate::app::paths::Paths;
-use crate::app::pixel_values::PixelValues;
-use crate::app::texture::Texture;
-use crate::app::theme;
+use crate::app::toolkit::texture::Texture;
+use crate::app::toolkit::theme;
+use crate::app::tools::paths::Paths;
 use crate::numbers::heat::{HeatScale, colour_at};
 use crate::progressive::Phase;
 use eframe::egui::text::{LayoutJob, TextWrapping};

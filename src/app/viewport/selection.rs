@@ -2,13 +2,13 @@
 
 use super::paint::plate;
 use super::{place_at, point_at};
-use crate::app::facts::Facts;
+use crate::app::commands::facts::Facts;
+use crate::app::model::spheres::Selected;
+use crate::app::model::spheres::grip::{Grip, Held};
+use crate::app::model::spheres::silhouette::Outline;
 use crate::app::model::{Body, Document, Edit};
-use crate::app::spheres::Selected;
-use crate::app::spheres::grip::{Grip, Held};
-use crate::app::spheres::silhouette::Outline;
-use crate::app::theme;
-use crate::app::widgets::{compact, point_words};
+use crate::app::toolkit::theme;
+use crate::app::toolkit::widgets::{compact, point_words};
 use eframe::egui::{
     Align2, Color32, CursorIcon, PointerButton, Pos2, Rect, Response, Shape, Stroke, Ui, vec2,
 };

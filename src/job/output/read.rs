@@ -1,6 +1,6 @@
 //! Reads pictures of any program: PNG, EXR, and Netpbm's formats.
 
-use super::{exr, netpbm};
+use super::{exr, netpbm, png};
 use crate::film::checkpoint;
 use crate::stages::Transfer;
 use crate::system::files::{self, ShownPath};
@@ -11,7 +11,7 @@ use image::{DynamicImage, ImageDecoder};
 use std::io::{BufRead, BufReader, Read, Seek};
 use std::path::Path;
 
-/// What integer values mean.
+/// The meaning of integer values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Encoding {
     /// As Weekender and the book write them: the transfer, then `floor(256 v)`. Values of another largest one than 255 or
@@ -45,8 +45,10 @@ pub struct ReadPicture {
     pub format: &'static str,
     pub values: Values,
     pub damages: Vec<Damage>,
-    /// What the reader left out or assumed.
+    /// Omissions and assumptions of the reader.
     pub notes: Vec<String>,
+    /// The meaning of integers according to the file.
+    pub stated: Option<Encoding>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -172,7 +174,21 @@ pub(super) fn note_on_alpha(translucent: usize) -> Option<String> {
     (translucent > 0).then(note)
 }
 
-fn read_png(reader: impl BufRead + Seek, length: u64) -> Result<ReadPicture> {
+/// A note if red, green, blue and white (CIE x, y) are not those of sRGB.
+pub(super) fn note_on_primaries(found: [[f32; 2]; 4]) -> Option<String> {
+    let usual = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]];
+    let is_near = |(found, usual): (&f32, &f32)| (found - usual).abs() < 2e-3;
+    let [x, y] = found[0];
+    (!found.as_flattened().iter().zip(usual.as_flattened()).all(is_near)).then(|| {
+        format!(
+            "its colours are not those of sRGB (its red is at {x},{y} instead of 0.64,0.33); they are not converted"
+        )
+    })
+}
+
+fn read_png(mut reader: impl BufRead + Seek, length: u64) -> Result<ReadPicture> {
+    let (stated, mut notes) = png::colours(&mut reader);
+    reader.rewind()?;
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(8 * PIXEL_LIMIT);
     let incomplete = |error| anyhow!("{error}; check whether the file is complete");
@@ -191,7 +207,7 @@ fn read_png(reader: impl BufRead + Seek, length: u64) -> Result<ReadPicture> {
     } else {
         0
     };
-    let notes = note_on_alpha(translucent).into_iter().collect();
+    notes.extend(note_on_alpha(translucent));
     let is_deep = image.color().bytes_per_pixel() > image.color().channel_count();
     let (most, values): (u16, Vec<u16>) = if is_deep {
         (u16::MAX, image.to_rgb16().into_raw())
@@ -200,7 +216,7 @@ fn read_png(reader: impl BufRead + Seek, length: u64) -> Result<ReadPicture> {
     };
     let rgb = values.as_chunks::<3>().0.to_vec();
     let values = Values::Integers { most, rgb };
-    Ok(ReadPicture { width, height, format: "PNG", values, damages: Vec::new(), notes })
+    Ok(ReadPicture { width, height, format: "PNG", values, damages: Vec::new(), notes, stated })
 }
 
 impl Encoding {
@@ -210,10 +226,20 @@ impl Encoding {
         if value >= most { [f64::NAN; 2] } else { self.ends(value, most, row, height) }
     }
 
-    /// The least and the largest linear value that are stored as `value` of up to `most`, if nothing is brighter.
+    /// The range of linear values that encode to `value` with maximum `most`, if nothing is brighter.
     fn ends(self, value: u16, most: u16, row: usize, height: usize) -> [f64; 2] {
         let ends = if self == Encoding::Srgb { rounded(value, most) } else { displayed(value, most) };
         ends.map(|end| self.linear(end.max(0.0), row, height))
+    }
+
+    /// How messages name it.
+    pub fn name(self) -> String {
+        match self {
+            Encoding::Book(Transfer::Linear) => "linear".to_owned(),
+            Encoding::Book(_) => "gamma2".to_owned(),
+            Encoding::Gamma(exponent) => format!("of gamma {exponent:.3}"),
+            Encoding::Srgb => "sRGB".to_owned(),
+        }
     }
 
     /// The linear value of a displayed one, within `0..=1`.
