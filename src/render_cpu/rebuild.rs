@@ -5,7 +5,7 @@
 
 use super::priority::give_way;
 use crate::job::render::{RenderJob, TRACING_BYTES_PER_SPHERE};
-use crate::prepared::PreparedScene;
+use crate::prepared::{HierarchySource, PreparedScene};
 use crate::system::memory;
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -39,12 +39,12 @@ impl Rebuild {
         }
     }
 
-    /// Notes that another scene has been prepared, if it was.
+    /// Notes that a scene has been prepared, perhaps with the hierarchy of the one before.
     pub fn note_prepared(&mut self, prepared: &PreparedScene<f32>) {
-        let is_kept = prepared.hierarchy_time.is_zero();
+        let is_kept = prepared.hierarchy_source == HierarchySource::Kept;
         let is_improvable = prepared.hierarchy.as_ref().is_some_and(|hierarchy| hierarchy.is_improvable());
         if !is_kept || !is_improvable {
-            (self.first, self.traced) = (prepared.hierarchy_time, Duration::ZERO);
+            (self.first, self.traced) = (prepared.hierarchy_source.time(), Duration::ZERO);
             self.is_settled = !is_improvable;
         }
     }

@@ -213,16 +213,16 @@ impl Renderer for CpuRenderer {
 
 impl CpuRenderer {
     fn kernel(&self) -> KernelInfo {
-        let (features, hierarchy_time) = match &self.prepared {
-            Some(Prepared::Single(traced, _)) => (traced.prepared.features, traced.prepared.hierarchy_time),
-            Some(Prepared::Double(traced, _)) => (traced.prepared.features, traced.prepared.hierarchy_time),
+        let (features, hierarchy) = match &self.prepared {
+            Some(Prepared::Single(traced, _)) => (traced.prepared.features, traced.prepared.hierarchy_source),
+            Some(Prepared::Double(traced, _)) => (traced.prepared.features, traced.prepared.hierarchy_source),
             None => return KernelInfo::default(),
         };
         let offered = |(isa, lanes)| kernels::offered(isa, lanes, self.wanted_parts(&features));
         let contents = self.packets.map_or(parts::ALL, offered);
         let (present, needed) = (parts::describe(contents), parts::describe(features.parts()));
         let about = if needed == present { present } else { format!("{present} (needed: {needed})") };
-        KernelInfo { about, left_out: parts::left_out(contents), hierarchy_time }
+        KernelInfo { about, left_out: parts::left_out(contents), hierarchy_time: hierarchy.time() }
     }
 
     fn pass_tracer(&self) -> Option<PassTracer<'_>> {

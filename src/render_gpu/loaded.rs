@@ -13,7 +13,6 @@ use crate::kernel::{Features, RECORD_COLUMNS, words_of};
 use crate::prepared::PreparedScene;
 use std::borrow::Cow;
 use std::sync::atomic::AtomicBool;
-use std::time::Duration;
 
 /// A job loaded to the device.
 pub(super) struct Loaded {
@@ -29,8 +28,6 @@ pub(super) struct SceneOnDevice {
     pub(super) prepared: PreparedScene<f32>,
     /// The index in the scene of each sphere, by number.
     pub(super) scene_index: Vec<u32>,
-    /// Time spent building the hierarchies; zero if they were there already.
-    pub(super) hierarchy_time: Duration,
     /// Number of nodes in the hierarchy.
     node_count: u32,
     job_buffer: wgpu::Buffer,
@@ -65,11 +62,10 @@ impl GpuRenderer {
             old.map_or((None, None), |old| (Some((old.scene, old.job)), Some(old.film)));
         let follows = seen.as_mut().is_some_and(|(scene, before)| scene.prepared.follow(before, job));
         let scene = match seen {
-            Some((mut scene, _)) if follows => {
+            Some((scene, _)) if follows => {
                 let data = GpuJob::new(&scene.prepared, scene.node_count);
                 self.gpu.queue.write_buffer(&scene.job_buffer, 0, bytemuck::cast_slice(&words_of(&[data])));
                 self.renew_anchored(&scene);
-                scene.hierarchy_time = Duration::ZERO;
                 scene
             }
             other => {
@@ -114,7 +110,7 @@ impl GpuRenderer {
         let specialise = self.options.specialise;
         let made = PreparedScene::<f32>::for_gpu(cancel, job, |needed| {
             let features = if specialise { *needed } else { needed.generalised() };
-            // With a hierarchy, paths may be put aside.
+            // With a hierarchy, paths may be suspended.
             kernels.begin(gpu, (EntryPoint::PathTrace, Features { suspends: true, ..features }, 0));
         });
         let mut prepared = made.ok_or(RenderError::Cancelled)?;
@@ -189,7 +185,6 @@ impl GpuRenderer {
             scene_index: prepared.scene_index.clone(),
             node_count: scene.node_count,
             job_buffer,
-            hierarchy_time: prepared.hierarchy_time,
             prepared,
         })
     }

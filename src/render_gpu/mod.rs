@@ -172,7 +172,7 @@ impl GpuRenderer {
         KernelInfo {
             about: format!("{present}; compiled in {seconds:.3} s; dispatches timed by {timer}"),
             left_out: parts::left_out(features.parts()),
-            hierarchy_time: scene.hierarchy_time,
+            hierarchy_time: scene.prepared.hierarchy_source.time(),
         }
     }
 }

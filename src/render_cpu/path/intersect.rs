@@ -3,7 +3,7 @@
 use super::packet::Packet;
 use super::records::ShadingRecords;
 use super::rules;
-use crate::kernel::LoadShading;
+use crate::kernel::{LoadShading, parts};
 use crate::prepared::PreparedScene;
 use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::bvh::{Stack, traverse};
@@ -29,7 +29,6 @@ pub(super) fn intersect<L: Lanes, const PARTS: u32>(
     let active = packet.busy & !packet.absorbed.bits();
     stats.rays += u64::from(active.count_ones());
     let (rays, prepared) = (&packet.rays, &broadcast.prepared);
-    let features = prepared.features.in_kernel::<PARTS>();
     if let Some(nearest) = rules::book_nearest::<L, PARTS>(l, broadcast, rays) {
         packet.nearest = nearest;
         return;
@@ -39,20 +38,22 @@ pub(super) fn intersect<L: Lanes, const PARTS: u32>(
         let sphere = Spheres::load(l, sphere);
         nearest.take(l, near_root(l, rays, &sphere), sphere.number);
     }
+    // A list can be empty. Kernels without the part for it have no code to search it.
     match &prepared.hierarchy {
-        Some(hierarchy) if features.hierarchy() => {
+        Some(hierarchy) if parts::include(PARTS, parts::HIERARCHY) => {
             // A hit of the ground rules out the boxes behind it.
             take_anchored::<L, PARTS>(l, prepared, rays, &mut nearest);
             traverse(l, hierarchy, &prepared.two_root, rays, l.mask(active), stack, &mut nearest);
         }
-        _ if features.two_root() => {
-            for sphere in &broadcast.two_root {
-                let sphere = Spheres::load(l, sphere);
-                nearest.take(l, nearest_root(l, rays, &sphere), sphere.number);
+        _ => {
+            if parts::include(PARTS, parts::GLASS) {
+                for sphere in &broadcast.two_root {
+                    let sphere = Spheres::load(l, sphere);
+                    nearest.take(l, nearest_root(l, rays, &sphere), sphere.number);
+                }
             }
             take_anchored::<L, PARTS>(l, prepared, rays, &mut nearest);
         }
-        _ => take_anchored::<L, PARTS>(l, prepared, rays, &mut nearest),
     }
     packet.nearest = nearest;
 }
@@ -65,7 +66,7 @@ fn take_anchored<L: Lanes, const PARTS: u32>(
     rays: &Rays<L>,
     nearest: &mut Nearest<L>,
 ) {
-    if !prepared.features.in_kernel::<PARTS>().anchored() {
+    if !parts::include(PARTS, parts::EXTREMES) {
         return;
     }
     let one = l.splat_u(1);
