@@ -299,7 +299,7 @@ impl Mapping for GpuWay {
         let counters: GpuCounters = bytemuck::pod_read_unaligned(counters);
         anyhow::ensure!(
             counters.dispatch.unfinished == 0,
-            "some paths were not finished, because a thread's loop has at most {ITERATION_LIMIT} turns; ask for fewer samples"
+            "some paths were not finished, because a thread's loop has at most {ITERATION_LIMIT} iterations; ask for fewer samples"
         );
         let film = sums.chunks_exact(24).map(|pixel| PixelSum(bytemuck::pod_read_unaligned(pixel))).collect();
         Ok(Traced { seconds, film, in_use: None })

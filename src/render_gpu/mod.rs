@@ -21,11 +21,12 @@ pub mod shader_source;
 mod small_programs;
 mod trace;
 
-pub use adapter::{AdapterInfo, adapters};
+pub use adapter::{AdapterInfo, BUSY_THREADS_OF_SOFTWARE, SOFTWARE_THREADS_IN_STEP, adapters};
 pub use options::{
     BATCH_TARGET, Fault, FaultInjection, GpuError, GpuOptions, GpuReport, INTERACTIVE_TARGET, InjectionPoint,
 };
 pub use scene::{Exported, ITERATION_LIMIT, SHARED_BLOCK};
+pub use schedule::{BUDGET_LIMITS, FIRST_PATHS, GROWTH_LIMIT};
 
 use crate::film::Film;
 use crate::job::render::{

@@ -8,12 +8,15 @@ use std::ops::Range;
 use std::time::Duration;
 
 /// Paths in the first dispatch: few enough for the slowest adapter.
-const FIRST_PATHS: f64 = 4096.0;
+pub const FIRST_PATHS: f64 = 4096.0;
 
 /// Largest growth in paths from one dispatch to the next, as a factor.
-const GROWTH_LIMIT: f64 = 4.0;
+pub const GROWTH_LIMIT: f64 = 4.0;
 
-/// Most blocks in a dispatch, which is the capacity of their buffer.
+/// The smallest and the largest budget in paths.
+pub const BUDGET_LIMITS: [f64; 2] = [64.0, 1e12];
+
+/// Maximum number of blocks in a dispatch: the capacity of their buffer.
 pub const BLOCK_LIMIT: usize = 1024;
 
 /// A dispatch takes at least this many times its overhead, so that most of its time is spent on paths.
@@ -22,19 +25,21 @@ const TIMES_OVERHEAD: f64 = 3.0;
 /// Longest time in seconds that a dispatch is given because of its overhead.
 const LONGEST_GOAL: f64 = 0.12;
 
-/// Growth of the shortest time from one dispatch to the next, so that it is forgotten in the end.
+/// Growth of the shortest time from one dispatch to the next, so that it is eventually forgotten.
 const FORGETTING: f64 = 1.002;
 
-/// Share of the overhead that remains from one dispatch to the next, so that the budget moves and it is measured anew.
+/// Share of the overhead that remains from one dispatch to the next, so that the budget moves and the overhead is measured
+/// again.
 const KEPT_OVERHEAD: f64 = 0.995;
 
-/// Two dispatches tell the overhead if their numbers of paths differ by this factor.
+/// Two dispatches reveal the overhead if their numbers of paths differ by this factor.
 const TELLING_FACTOR: f64 = 1.25;
 
 /// Weight of a new measurement of the overhead.
 const OVERHEAD_WEIGHT: f64 = 0.3;
 
-/// The number of paths that a dispatch should have, learnt from earlier dispatches.
+/// The number of paths that a dispatch should have, learnt from earlier dispatches. Twin: `Budget` in assets/web/film.js,
+/// which does not estimate the overhead.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     paths: f64,
@@ -73,7 +78,7 @@ impl Budget {
         } else {
             fitting.clamp(least, self.paths * GROWTH_LIMIT)
         }
-        .clamp(64.0, 1e12);
+        .clamp(BUDGET_LIMITS[0], BUDGET_LIMITS[1]);
     }
 
     /// The time that a dispatch should take, in seconds: the target, or more where most of it would be overhead.
@@ -81,7 +86,7 @@ impl Budget {
         self.target.as_secs_f64().max((TIMES_OVERHEAD * self.overhead).min(LONGEST_GOAL))
     }
 
-    /// Takes the time for a straight line over the paths; the overhead is where it begins.
+    /// Fits a straight line to time over paths; the overhead is its value at 0.
     fn learn_overhead(&mut self, paths: f64, took: f64) {
         self.shortest = (FORGETTING * self.shortest).min(took);
         self.overhead *= KEPT_OVERHEAD;
