@@ -36,7 +36,7 @@ struct Tile {
     size: vec2u,
 }
 
-// What a thread has traced.
+// Counts of a thread's work.
 struct Traced {
     rays: u32,
     rejected: u32,

@@ -13,7 +13,7 @@ fn book_nearest(ray: Ray) -> Nearest {
     return nearest;
 }
 
-// What stages show in place of light, in units of the film: `sky` if the ray misses.
+// The colour that a stage shows in place of light, in units of the film: `sky` if the ray misses.
 fn shown_colour(pixel: u32, miss: bool, sky: vec3f, outward: vec3f) -> vec3f {
     if SHADING == SHADING_IMAGE_GRADIENT {
         // A single column or row has no far end, so its share is 0.

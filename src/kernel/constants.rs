@@ -55,7 +55,7 @@ constants! {
     /// Capacity of the uniform buffer in anchored spheres.
     pub const UNIFORM_ANCHORED: usize = 4;
 
-    /// Stack entries of a traversal on the GPU, one per level, and therefore the most levels of a tree.
+    /// Stack entries of a traversal on the GPU, one per level, and therefore the maximum number of levels of a tree.
     pub const WIDE_STACK_SIZE: usize = 24;
 
     /// Words of a probe's input and output.
@@ -112,7 +112,7 @@ constants! {
     FIXED_POINT_MAX: f64,
 }
 
-/// Stack entries of a traversal on the CPU, one per level, and therefore the most levels of a tree.
+/// Stack entries of a traversal on the CPU, one per level, and therefore the maximum number of levels of a tree.
 pub const STACK_SIZE: usize = 64;
 
 /// From this bit on, [`super::Node::count`] holds the order of an inner node's children: twice the axis that separates

@@ -1,5 +1,5 @@
-//! What a job needs from a kernel. Each feature is declared once: how it follows from the job, the part of a kernel
-//! that implements it, and its pipeline override on the GPU.
+//! Features: properties of a job that need code in a kernel. Each is declared once: how it follows from the job, the part
+//! of a kernel that implements it, and its pipeline override on the GPU.
 
 use super::{AnchoredSphere, Roots, Tag, UNIFORM_ANCHORED, UNIFORM_SPHERES};
 use crate::job::render::{RenderJob, SamplerKind};
@@ -20,7 +20,7 @@ pub mod parts {
     /// The rules of the stages.
     pub const RULES: u32 = 16;
     pub const ALL: u32 = 31;
-    /// Every kernel has the code, or the CPU tracer checks the job at run time.
+    /// For features whose code every kernel contains, or that the CPU checks at run time.
     pub const NONE: u32 = 0;
 
     const LABELS: [(u32, &str); 5] = [
@@ -52,12 +52,12 @@ pub mod parts {
     }
 }
 
-/// How a job's spheres are sorted, as the features need to know it.
+/// How a job's spheres are sorted.
 #[derive(Clone, Copy, Debug)]
 pub struct SortedSpheres<'a, R> {
-    /// Spheres whose nearer root alone counts.
+    /// Spheres of which only the nearer root counts.
     pub opaque_count: usize,
-    /// Spheres whose roots both count.
+    /// Spheres of which both roots count.
     pub two_root_count: usize,
     /// Spheres described relative to a point on their surface.
     pub anchored: &'a [AnchoredSphere<R>],
@@ -134,7 +134,7 @@ macro_rules! features {
             ] = $answer:expr;
         )*
     ) => {
-        /// What a job needs from a kernel; a kernel leaves out the code for everything else.
+        /// The features that a job needs from a kernel, which leaves out the code for everything else.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub struct Features {
             $($(#[doc = $doc])* pub $name: $type,)*
@@ -259,7 +259,7 @@ features! {
     /// Paths may be too long for one dispatch: its threads suspend them, and those of a workgroup share its blocks of
     /// samples. Only the renderer on the GPU knows the length of a dispatch, and clears this where all paths fit.
     suspends: bool [off true, general true] = true;
-    /// What a ray contributes.
+    /// The contribution of a ray.
     shading: Shading [off Shading::Path, part RULES] = job.rules().shading;
     /// The laws that glass obeys.
     dielectric_laws: DielectricLaws [off DielectricLaws::Schlick, part RULES] = job.rules().dielectric;

@@ -8,7 +8,7 @@ use super::{COUNT_MASK, ORDER_SHIFT, Real, Roots, UNDER_EYE, UNIFORM_ANCHORED, U
 use bytemuck::{Pod, Zeroable};
 
 record! {
-    /// The data that shading needs about a sphere.
+    /// The data of a sphere for shading.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct ShadingRecord<R> as "ShadingRecord", loaded by LoadShading {
         /// Centre, or anchor of an anchored sphere.
@@ -202,7 +202,7 @@ record! {
         pub extent: f32,
         /// Growth of the sky radiance with the direction's y, in units of the film.
         pub sky_slope: [f32; 3],
-        /// Most rays per path.
+        /// Maximum number of rays per path.
         pub max_depth: u32,
         /// Seed of the sampler.
         pub seed: u32,

@@ -81,8 +81,8 @@ impl Plan {
         Plan::until(Stop::default())
     }
 
-    /// The duration to plan the first pass for, once the time per sample is known. `None` if passes should start short,
-    /// because someone watches or because the error should be estimated early.
+    /// The planned duration of the first pass, once the time per sample is known. `None` if passes should start short, to
+    /// show a picture or to estimate the error early.
     pub fn first_pass_target(&self) -> Option<Duration> {
         let is_long = self.pass_target >= Plan::BATCH_PASS && self.stop.noise.is_none();
         let limit = self.stop.time_limit().unwrap_or(Duration::MAX);
@@ -143,7 +143,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_time_limit_is_a_duration_whatever_its_seconds() {
+    fn any_time_limit_is_a_duration() {
         let limit = |seconds: f64| Stop { seconds: Some(seconds), ..Stop::default() }.time_limit();
         for (seconds, expected) in [
             (1.5, Duration::from_millis(1500)),

@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_smallest_kernel_that_suffices_is_offered() {
+    fn smallest_sufficient_kernel_is_offered() {
         let needs = [OPAQUE, GLASS, parts::LENS, FINISHED, parts::RULES];
         for (isa, lanes, expected) in [
             (Isa::Portable, 1, [GLASS, GLASS, GENERAL, GENERAL, GENERAL]),

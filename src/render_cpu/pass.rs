@@ -21,7 +21,7 @@ pub(super) enum Prepared {
     Double(Box<BroadcastScene<f64>>, Kernel<f64>),
 }
 
-/// What a pass traces, and how.
+/// A pass.
 #[derive(Clone, Copy)]
 pub(super) struct Pass<'a> {
     pub side: u32,
@@ -58,7 +58,7 @@ impl<'a> StopRequest<'a> {
     }
 }
 
-/// What a pass does with the sums of its blocks.
+/// The use of the sums of a pass.
 #[derive(Clone, Copy)]
 pub(super) enum Purpose<'a> {
     /// Adds them to the film.
@@ -85,7 +85,7 @@ pub(super) struct TracedTile {
     pub expected: u64,
     /// The message of the tracer's panic, if it panicked.
     pub panic: Option<String>,
-    /// The time that it took a thread.
+    /// Wall time of the tile.
     pub took: Duration,
 }
 
@@ -95,7 +95,7 @@ impl TracedTile {
     }
 }
 
-/// What traces passes.
+/// Traces passes.
 #[derive(Clone, Copy)]
 pub(super) struct PassTracer<'a> {
     pub threads: &'a rayon::ThreadPool,
@@ -211,7 +211,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_estimate_needs_few_tiles() {
+    fn estimate_needs_few_tiles() {
         for (tile_count, one_in, expected) in [
             (0, 16, vec![]),
             (1, 16, vec![0]),
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pass_is_given_up_if_fewer_than_half_of_its_tiles_have_begun() {
+    fn pass_is_given_up_before_half_of_its_tiles_have_begun() {
         for (begun, is_given_up) in [(0, true), (1, true), (2, true), (3, false), (4, false)] {
             let requested = AtomicBool::new(false);
             let stop = StopRequest::when(&requested);
@@ -240,16 +240,19 @@ mod tests {
     }
 
     #[test]
-    fn a_tile_without_all_its_samples_is_named_by_its_corner() {
+    fn incomplete_tile_is_named_by_its_corner() {
         let (stats, took) = (TileStats::default(), Duration::ZERO);
         let tile = |finished| TracedTile { stats, finished, expected: 9, panic: None, took };
         // Tiles of 8 pixels in a picture of 20: three columns.
         let mut traced: Vec<TracedTile> = [9, 9, 9, 9, 4, 9].map(tile).into();
-        let told = what_is_missing(&traced, 8, 20).expect("samples are missing");
-        assert!(told.contains("of 9 blocks") && told.contains("pixel (8, 8) 4"), "{told}");
+        let reason = what_is_missing(&traced, 8, 20).expect("samples are missing");
+        assert!(reason.contains("of 9 blocks") && reason.contains("pixel (8, 8) 4"), "{reason}");
         assert_eq!(what_is_missing(&traced[..4], 8, 20), None);
         traced[2].panic = Some("a slip".to_owned());
-        let told = what_is_missing(&traced, 8, 20).expect("a panic");
-        assert!(told.starts_with("it panicked: a slip; of 9") && told.contains("pixel (16, 0)"), "{told}");
+        let reason = what_is_missing(&traced, 8, 20).expect("a panic");
+        assert!(
+            reason.starts_with("it panicked: a slip; of 9") && reason.contains("pixel (16, 0)"),
+            "{reason}"
+        );
     }
 }

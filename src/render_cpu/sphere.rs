@@ -68,7 +68,7 @@ impl<R: Copy> BroadcastSphere<R> {
     }
 }
 
-/// The distance to a sphere, which is no hit for some of the lanes.
+/// The distance to a sphere; some lanes may miss it.
 #[derive(Clone, Copy)]
 pub struct Candidate<L: Lanes> {
     /// Distance, encoded as [`Lanes::key`].
@@ -78,7 +78,7 @@ pub struct Candidate<L: Lanes> {
 }
 
 impl<L: Lanes> Candidate<L> {
-    /// The distance, encoded as [`Lanes::key`], or 0, which is no hit, where the ray leaves the sphere.
+    /// The distance, encoded as [`Lanes::key`], or 0, which stands for a miss, where the ray leaves the sphere.
     #[inline(always)]
     pub fn key(self, l: L) -> L::Key {
         l.exclude(self.excluded, self.key)
@@ -212,7 +212,7 @@ fn near_end<L: Lanes>(rays: &Rays<L>, number: L::U, (h, s): (L::F, L::F)) -> Can
 /// Distance to the nearest end of a [`chord`] in front of the ray.
 #[inline(always)]
 fn nearest_end<L: Lanes>(rays: &Rays<L>, number: L::U, (h, s): (L::F, L::F)) -> Candidate<L> {
-    // A ray that enters the sphere from its surface travels the chord 2h. For it, h + s is not negative and hence no hit.
+    // A ray that enters the sphere from its surface travels the chord 2h. For it, h + s is not negative and hence a miss.
     let s = rays.inside.eq(number).select(h.abs(), s);
     // The negation comes last, so that a chord of length 0 is a hit at -0.
     let (near, far) = (L::key(h + s), L::key(-(s - h)));

@@ -65,7 +65,7 @@ impl RefillBlock {
     }
 }
 
-/// What a packet's lanes work on: a block of samples of a pixel each.
+/// The blocks of a packet's lanes, each of one pixel's samples.
 #[derive(Clone, Copy)]
 pub struct LaneBlocks<L: Lanes> {
     /// The sampler's counter, which selects the sample.
@@ -137,7 +137,7 @@ impl RefillOrder {
         self.places.len() - MAX_LANES
     }
 
-    /// As many pixels from number `first` on as a packet can have lanes. The last ones may be padding.
+    /// The next pixels from number `first` on, one for each possible lane. The last ones may be padding.
     #[inline(always)]
     fn row(&self, first: usize) -> &[u32; MAX_LANES] {
         const PADDING: &[u32; MAX_LANES] = &[0; MAX_LANES];
@@ -205,8 +205,8 @@ impl<'film> Work<'film> {
         u32::from((2..=8).contains(&per_block))
     }
 
-    /// Collects the sums of the lanes `done` and gives each of them its next block. `busy` are the lanes that have a
-    /// block, as bits. Returns the blocks, and the lanes that have one now.
+    /// Adds the sums of the lanes `done` to the film and gives each of them its next block. `busy` is the bit mask of the
+    /// lanes that have a block. Returns the blocks, and the new mask.
     #[inline(always)]
     pub fn refill<L: Lanes>(
         &mut self,
@@ -301,7 +301,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_pixel_has_its_turn_once() {
+    fn order_holds_every_pixel_once() {
         for [width, height] in [[1, 1], [3, 5], [8, 8], [64, 7], [256, 256]] {
             let order = RefillOrder::new(width, height);
             let mut places = order.places[..order.len()].to_vec();

@@ -353,7 +353,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_step_of_caution_makes_dispatches_eight_times_shorter() {
+    fn each_step_of_caution_shortens_dispatches_eightfold() {
         let limits = |iteration_limit: u32, suspends: bool| {
             [0, 1, 2, 3].map(|caution| {
                 let dispatches = Dispatches {

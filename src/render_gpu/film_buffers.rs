@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 /// Size of a pixel's sums in bytes.
 const PIXEL_SIZE: u64 = size_of::<PixelSum>() as u64;
 
-/// Readbacks that nobody requested may take at most one part in this many of the time.
+/// Unrequested readbacks may take at most one part in this many of the time.
 const READBACK_SHARE: u32 = 20;
 
 /// The rows of the film that one buffer holds.

@@ -98,7 +98,7 @@ fn start(gpu: Gpu, key: Key, modules: Modules) -> Slot {
     let (sender, kernel) = mpsc::channel();
     let compile = {
         let (gpu, modules) = (gpu.clone(), Arc::clone(&modules));
-        // If the renderer has been dropped, nobody receives the kernel.
+        // If the renderer has been dropped, there is no receiver.
         move || drop(sender.send(compiled(&gpu, key, &modules)))
     };
     match std::thread::Builder::new().name("compile".to_owned()).spawn(compile) {

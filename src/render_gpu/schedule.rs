@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn an_overhead_beyond_the_target_does_not_shrink_the_budget_to_nothing() {
+    fn overhead_beyond_target_keeps_a_budget() {
         for overhead in [0.003, 0.007, 0.012, 0.02, 0.035] {
             for per_path in [1e-7, 5e-6, 2e-5] {
                 let mut budget = Budget::new(Duration::from_millis(8));
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slow_device_without_overhead_keeps_to_the_target() {
+    fn slow_device_without_overhead_keeps_target() {
         for per_path in [1e-9, 1e-6, 2e-5, 1e-4] {
             let mut budget = Budget::new(Duration::from_millis(8));
             for took in &dispatches(&mut budget, 200, 0.0, per_path)[20..] {
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn blocks_are_taken_whole_where_there_is_room() {
+    fn blocks_are_taken_whole_where_they_fit() {
         let mut blocks = Blocks::of_range(0..64, &settings(false), 32);
         let mut taken = |most| blocks.take(most).0.iter().map(|block| block.count).collect::<Vec<u32>>();
         // Of a block that is too large, a power of two is taken; the rest is left in parts that double.

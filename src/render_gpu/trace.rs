@@ -176,7 +176,7 @@ fn pixels_within([width, height]: [u32; 2], tile: [u32; 2], tiles: Range<u32>) -
     tiles.map(pixels).sum()
 }
 
-/// Splits what is left into equal parts of at most `affordable` and at least one, so that no small dispatch remains.
+/// Splits the remaining tiles into equal parts of at most `affordable` and at least one, so that no small dispatch remains.
 fn evenly(left: u32, affordable: u64) -> u32 {
     let left = u64::from(left);
     left.div_ceil(left.div_ceil(affordable.max(1))) as u32
@@ -201,12 +201,12 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_is_split_into_equal_parts() {
+    fn remainder_is_split_into_equal_parts() {
         // Of ten with nine affordable, two parts of five rather than one of nine and one of one; at least one at a time.
         for (left, affordable, expected) in
             [(10, 100, 10), (10, 9, 5), (10, 4, 4), (9, 4, 3), (7, 0, 1), (u32::MAX, u64::MAX, u32::MAX)]
         {
-            assert_eq!(evenly(left, affordable), expected, "{left} of which {affordable} are affordable");
+            assert_eq!(evenly(left, affordable), expected, "{left}, {affordable} affordable");
         }
     }
 }

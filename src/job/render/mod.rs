@@ -63,7 +63,7 @@ impl RenderJob {
         RenderJob { scene, camera, settings, rules }.seen_by(camera, settings)
     }
 
-    /// The same scene and rules with another camera or picture size. The scene is shared and not validated again.
+    /// The same scene and rules with another camera or other settings. The scene is shared and not validated again.
     ///
     /// # Errors
     /// The first invalid value of the camera or the settings.
@@ -72,10 +72,10 @@ impl RenderJob {
         for (what, value, limit, remedy) in [
             ("width", settings.width, SIZE_LIMIT, "choose a smaller picture or stitch several"),
             ("height", settings.height, SIZE_LIMIT, "choose a smaller picture or stitch several"),
-            ("max_depth", settings.max_depth, DEPTH_LIMIT, "50 rays a path are the book's"),
+            ("max_depth", settings.max_depth, DEPTH_LIMIT, "the book uses 50 rays per path"),
         ] {
             if !(1..=limit).contains(&value) {
-                let reason = format!("{what} is {value}, but must be within 1 and {limit}; {remedy}");
+                let reason = format!("{what} is {value}, but must be between 1 and {limit}; {remedy}");
                 return Err(JobError::Settings(reason));
             }
         }
@@ -177,12 +177,12 @@ impl Stats {
     }
 }
 
-/// What a renderer has made for its job; empty without one.
+/// A renderer's kernel for its job; empty without a job.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct KernelInfo {
     /// The kernel, and how long it took to compile.
     pub about: String,
-    /// The parts that it does not have.
+    /// The parts that it leaves out.
     pub left_out: Vec<&'static str>,
     /// Wall time of building the hierarchy; zero if there is none.
     pub hierarchy_time: Duration,
@@ -257,7 +257,7 @@ pub struct Diagnostics {
     pub tile_occupancy: Option<TileOccupancy>,
     /// Total time of all dispatches so far by the device's own clock; `None` without one.
     pub device_time: Option<Duration>,
-    /// Whether the renderer heeds [`Control::stop`], so that stopping takes at most half the time of a pass.
+    /// Whether the renderer acts on [`Control::stop`], so that stopping takes at most half the time of a pass.
     pub stops_early: bool,
 }
 

@@ -230,7 +230,7 @@ impl Render {
         self.status.backend = Some(renderer.info());
         self.status.say(renderer.take_messages());
         if is_picture_wanted && self.film.sample_count() == 0 {
-            // Users wait most eagerly for the first picture.
+            // The first picture is the most urgent.
             self.finish_samples(renderer)?;
         } else if is_picture_wanted {
             guarded(self.choice.name(), || renderer.request_readback())?;
@@ -263,7 +263,7 @@ impl Render {
         })
     }
 
-    /// Makes the first pass as long as the others if nobody watches and the renderer can predict its time.
+    /// Makes the first pass as long as the others in a batch render whose renderer can predict its time.
     fn plan_first_pass(&mut self, renderer: &mut dyn Renderer) -> Result<(), RenderError> {
         let Some(target) = self.plan.first_pass_target() else { return Ok(()) };
         let gap = self.requested.first_gap(self.plan.range(), u64::MAX);

@@ -43,8 +43,8 @@ pub(super) fn book_hit_point<L: Lanes, const PARTS: u32>(
     (!is_exact).then(|| book_point(rays, t, record.reference(), record.curvature()))
 }
 
-/// What stages show in place of light, in units of the film: `sky` where the ray misses. `None` for stages with light.
-/// `outward` finds the outward normals.
+/// The colour that a stage shows in place of light, in units of the film: `sky` where the ray misses. `None` for stages
+/// with light. `outward` finds the outward normals.
 #[inline(always)]
 pub(super) fn shown_colour<L: Lanes, const PARTS: u32>(
     l: L,

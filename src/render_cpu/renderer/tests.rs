@@ -20,7 +20,7 @@ fn film(renderer: &mut CpuRenderer, job: &RenderJob) -> Film {
 }
 
 #[test]
-fn a_hierarchy_outlives_the_move_of_a_camera_and_gives_the_same_film() {
+fn camera_move_keeps_hierarchy_and_film() {
     let first = small("field:200");
     let mut moved = *first.camera();
     moved.look_from += DVec3::new(0.5, 0.25, -1.0);
@@ -73,7 +73,7 @@ fn sample_time_is_estimated_for_a_prepared_job() {
 }
 
 #[test]
-fn a_stop_leaves_the_film_with_a_whole_pass_or_without_it() {
+fn stopped_pass_is_whole_or_withdrawn() {
     let mut recipe = Recipe::find("three-spheres").expect("a built-in scene");
     (recipe.settings.width, recipe.settings.height) = (256, 144);
     let (job, never) = (recipe.job().expect("valid"), AtomicBool::new(false));
@@ -103,7 +103,7 @@ fn a_stop_leaves_the_film_with_a_whole_pass_or_without_it() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn threads_of_low_priority_give_way() {
+fn low_priority_threads_are_nicer() {
     let niceness = |low_priority| {
         let options = CpuOptions { threads: Some(1), low_priority, ..CpuOptions::default() };
         CpuRenderer::new(options).unwrap().threads.install(|| {
