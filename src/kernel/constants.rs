@@ -58,9 +58,6 @@ constants! {
     /// Stack entries of a traversal on the GPU, one per level, and therefore the maximum number of levels of a tree.
     pub const WIDE_STACK_SIZE: usize = 24;
 
-    /// Words of a probe's input and output.
-    pub const PROBE_STRIDE: usize = 18;
-
     /// Stands for "no sphere" where a sphere's number is expected.
     pub const NONE: u32 = u32::MAX;
 

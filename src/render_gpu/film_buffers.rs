@@ -128,14 +128,6 @@ impl FilmBuffers {
         self.shape == shape(settings, limit)
     }
 
-    /// The sums, if there is only one slab, for [`super::GpuRenderer::resolve`].
-    pub fn sums_of_whole(&self) -> Option<&wgpu::Buffer> {
-        match self.slabs.as_slice() {
-            [only] => Some(&only.sums),
-            _ => None,
-        }
-    }
-
     /// Returns an error if any of these samples are in `film` or on the device.
     pub fn check_new(&self, range: &Range<u64>, film: &Film) -> Result<(), RenderError> {
         let readback = self.readback.as_ref().map(|readback| &readback.samples);

@@ -28,8 +28,7 @@ pub struct Kernel {
     pub compile_time: Duration,
 }
 
-/// Entry point, features, and number of the probe, which matters only for [`EntryPoint::Probe`].
-type Key = (EntryPoint, Features, u32);
+type Key = (EntryPoint, Features);
 
 type Modules = Arc<Mutex<HashMap<EntryPoint, wgpu::ShaderModule>>>;
 
@@ -107,7 +106,7 @@ fn start(gpu: Gpu, key: Key, modules: Modules) -> Slot {
     }
 }
 
-fn compiled(gpu: &Gpu, (entry_point, features, probe): Key, modules: &Modules) -> Result<Kernel, String> {
+fn compiled(gpu: &Gpu, (entry_point, features): Key, modules: &Modules) -> Result<Kernel, String> {
     let start = Instant::now();
     let label = Some(entry_point.name());
     let module = {
@@ -126,7 +125,6 @@ fn compiled(gpu: &Gpu, (entry_point, features, probe): Key, modules: &Modules) -
     let overrides = features.overrides();
     let mut constants: Vec<(&str, f64)> =
         overrides.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-    constants.push(("PROBE", f64::from(probe)));
     constants.push(("RECORD", f64::from(u8::from(entry_point == EntryPoint::PathRecord))));
     let pipeline = gpu.guarded(|| {
         gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {

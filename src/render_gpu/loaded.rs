@@ -76,11 +76,11 @@ impl GpuRenderer {
         };
         let features = self.features(&scene.prepared);
         self.check_lists(&features, &scene.prepared).map_err(failed)?;
-        self.kernels.begin(&self.gpu, (EntryPoint::PathTrace, features, 0));
+        self.kernels.begin(&self.gpu, (EntryPoint::PathTrace, features));
         self.messages.extend(scene.prepared.warning().cloned());
         let film = self.film_buffers(job, old_film).map_err(failed)?;
         self.make_room(job).map_err(failed)?;
-        let kernel = self.kernels.get(&self.gpu, (EntryPoint::PathTrace, features, 0), cancel)?;
+        let kernel = self.kernels.get(&self.gpu, (EntryPoint::PathTrace, features), cancel)?;
         self.gpu.faults.check().map_err(failed)?;
         if self.dispatches.is_new(&features) {
             self.gpu.expect_compiling();
@@ -111,7 +111,7 @@ impl GpuRenderer {
         let made = PreparedScene::<f32>::for_gpu(cancel, job, |needed| {
             let features = if specialise { *needed } else { needed.generalised() };
             // With a hierarchy, paths may be suspended.
-            kernels.begin(gpu, (EntryPoint::PathTrace, Features { suspends: true, ..features }, 0));
+            kernels.begin(gpu, (EntryPoint::PathTrace, Features { suspends: true, ..features }));
         });
         let mut prepared = made.ok_or(RenderError::Cancelled)?;
         let data = SceneData::new(&mut prepared);
