@@ -12,7 +12,7 @@ use crate::job::output::OutputFormat;
 use crate::job::recipe::{Recipe, plain_name};
 use crate::job::render::RenderJob;
 use crate::job::saved;
-use crate::progressive::{Plan, Stop};
+use crate::progressive::{NoiseOf, Plan, Stop};
 use crate::scene::animation::{FRAME_LIMIT, Turn};
 use crate::stages::Stage;
 use crate::system::files::{STANDARD, ShownPath};
@@ -178,6 +178,8 @@ pub struct BatchOptions {
     pub stage: Option<&'static Stage>,
     /// Which samples, and when to stop.
     pub plan: Plan,
+    /// Whether the picture is denoised.
+    pub denoise: bool,
     /// File of the picture.
     pub out: PathBuf,
     pub format: OutputFormat,
@@ -291,6 +293,7 @@ fn batch(flags: RenderFlags) -> Result<BatchOptions> {
     }
     Ok(BatchOptions {
         plan: plan(&flags, &recipe),
+        denoise: flags.files.denoise,
         recipe,
         job,
         stage,
@@ -324,7 +327,8 @@ fn plan(flags: &RenderFlags, recipe: &Recipe) -> Plan {
         (None, None) if seconds.is_some() || noise.is_some() => (0, None),
         (None, _) => (0, Some(recipe.samples_per_pixel)),
     };
-    let stop = Stop { samples, seconds, noise, is_denoised: flags.files.denoise };
+    let noise_of = if flags.files.denoise { NoiseOf::Denoised } else { NoiseOf::Film };
+    let stop = Stop { samples, seconds, noise, noise_of };
     Plan { first_sample, pass_target: Plan::BATCH_PASS, ..Plan::until(stop) }
 }
 

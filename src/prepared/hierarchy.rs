@@ -6,7 +6,7 @@
 use super::bounded::Bounded;
 use super::regions::{Forest, Method};
 use super::wide_bvh::WideBvh;
-use crate::kernel::{Node, Real, STACK_SIZE};
+use crate::kernel::{Node, ORDER_SHIFT, Real, STACK_SIZE};
 use crate::scene::Sphere;
 use glam::DVec3;
 use obvhs::BvhBuildParams;
@@ -18,10 +18,6 @@ use std::sync::atomic::AtomicBool;
 
 /// Most levels of a tree, limited by the traversal's stack.
 pub const DEPTH_LIMIT: usize = STACK_SIZE;
-
-/// From this bit on, [`Node::count`] holds twice the axis that separates the children, plus 1 if the second child comes
-/// before the first.
-pub const ORDER_SHIFT: u32 = 29;
 
 #[derive(Clone, Copy)]
 pub(super) struct Leaves {

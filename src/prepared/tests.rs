@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::job::recipe::Recipe;
-use crate::kernel::{COUNT_MASK, EYE, LoadShading, Node, STACK_SIZE};
+use crate::kernel::{EYE, LoadShading, Node, STACK_SIZE};
 use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
 
@@ -110,7 +110,7 @@ fn validate_hierarchy<R: Real>(
         let mut corners = node.low.iter().chain(&node.high);
         let is_within = corners.all(|x| x.to_f64().abs() <= extent.to_f64());
         ensure!(is_within, "node {index} reaches farther than {extent:?}");
-        let (first, count) = (node.first as usize, (node.count & COUNT_MASK) as usize);
+        let (first, count) = (node.first as usize, node.sphere_count() as usize);
         if count == 0 {
             for child in [first, first + 1] {
                 let is_within = nodes.get(child).is_none_or(|child| holds(node, child.low, child.high));

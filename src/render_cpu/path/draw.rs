@@ -1,6 +1,6 @@
 //! The random numbers of a path.
 
-use super::Packet;
+use super::packet::Packet;
 use crate::kernel::parts;
 use crate::prepared::PreparedScene;
 use crate::render_cpu::broadcast::BroadcastScene;
