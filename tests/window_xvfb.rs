@@ -44,11 +44,17 @@ impl Drop for Display {
 impl Display {
     /// `None`, with a message, if programs for it are missing and not required.
     fn start() -> Option<Display> {
+        Display::with(&[])
+    }
+
+    /// A display whose server has these arguments, too.
+    fn with(arguments: &[&str]) -> Option<Display> {
         if !are_there(&["Xvfb", "xdotool"], "no window was tried") {
             return None;
         }
         let mut server = Command::new("Xvfb")
             .args(["-displayfd", "1", "-screen", "0", "1280x800x24", "-nolisten", "tcp", "-noreset"])
+            .args(arguments)
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
@@ -400,4 +406,26 @@ fn without_a_display_the_message_names_the_way_out() {
     assert_eq!(output.status.code(), Some(2), "a display that does not answer");
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(told.contains(":4711 does not answer") && told.contains("--batch"), "{told}");
+}
+
+/// As with `ssh -X`, and with a factor that no window fits.
+#[test]
+fn a_display_that_cannot_show_the_window_is_refused_in_words() {
+    let home = tempfile::tempdir().unwrap();
+    let Some(display) = Display::with(&["-extension", "RANDR"]) else { return };
+    let refused = |command: &mut Command| {
+        let output = command.output().unwrap();
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        assert!(told.contains("--batch") || told.contains("set it to"), "{told}");
+        assert!(!told.contains("report it") && told.lines().count() == 1, "{told}");
+        told
+    };
+    let told = refused(display.weekender(home.path()).arg("--fresh"));
+    assert!(told.contains(&display.name), "{told}");
+    for factor in ["100", "0", "1e-9", "nan"] {
+        let told =
+            refused(display.weekender(home.path()).arg("--fresh").env("WINIT_X11_SCALE_FACTOR", factor));
+        assert!(told.contains("WINIT_X11_SCALE_FACTOR"), "{told}");
+    }
 }

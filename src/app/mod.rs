@@ -23,12 +23,20 @@ pub use model::{Device, Dock, Document, Origin, Remembered, Show, Sizing, Source
 pub use window::Window;
 
 use crate::cli::{DrawWith, WindowOptions};
+use crate::job::render::panic_text;
 use crate::system::files::state_directory;
+use crate::system::foreign::Captured;
 use crate::system::interrupt::Interrupt;
+use crate::system::journal;
 use anyhow::{Result, anyhow, bail};
 use eframe::egui::{self, Rect, pos2, vec2};
+use std::ops::RangeInclusive;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
+
+/// Scale factors that a window can have.
+const SCALE_FACTORS: RangeInclusive<f64> = 0.1..=16.0;
 
 /// The remedy when no window can be opened.
 const REMEDY: &str = "add --batch to render to a file without a window, for example: \
@@ -44,12 +52,15 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
             "there is no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set); {REMEDY}"
         );
     }
-    // winit panics at other values.
+    // winit panics at what is not a positive number. At 100 times its size, the window ends some window managers and the
+    // libraries of some displays.
     let factor = std::env::var("WINIT_X11_SCALE_FACTOR").unwrap_or_default();
-    let is_factor = |text: &str| text.parse().is_ok_and(|factor: f64| factor > 0.0 && factor.is_normal());
+    let is_factor = |text: &str| text.parse().is_ok_and(|factor: f64| SCALE_FACTORS.contains(&factor));
     if !factor.is_empty() && !factor.eq_ignore_ascii_case("randr") && !is_factor(&factor) {
         bail!(
-            "WINIT_X11_SCALE_FACTOR is {factor:?}; set it to a number above 0 with a point, such as 1.5, or to randr"
+            "WINIT_X11_SCALE_FACTOR is {factor:?}; set it to a number from {} to {} with a point, such as 1.5, or to randr",
+            SCALE_FACTORS.start(),
+            SCALE_FACTORS.end()
         );
     }
     let options = WindowOptions { state_directory: state_directory(), ..options };
@@ -65,7 +76,12 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
     for &renderer in renderers(options.draw_with) {
         let (native, options) = (native_options(renderer), options.clone());
         let (drawn, heeded) = (Arc::clone(&drawn), Arc::clone(&interrupt));
-        let create = Box::new(|context: &eframe::CreationContext<'_>| {
+        // Until the window is there, faults of the display are not the program's.
+        journal::expect_panics(true);
+        let captured = Captured::begin();
+        let create = Box::new(move |context: &eframe::CreationContext<'_>| {
+            drop(captured);
+            journal::expect_panics(false);
             bring_to_monitor(context);
             let mut window = Window::with(options, context.storage)?;
             (window.shell.interrupt, window.shell.dialogs.system.is_there) = (Some(heeded), true);
@@ -75,7 +91,18 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
             let _ = drawn.set(context.egui_ctx.clone());
             Ok(Box::new(window) as Box<dyn eframe::App>)
         });
-        match eframe::run_native("weekender", native, create) {
+        let outcome = catch_unwind(AssertUnwindSafe(|| eframe::run_native("weekender", native, create)));
+        let is_opening = journal::expect_panics(false);
+        let outcome = match outcome {
+            Ok(outcome) => outcome,
+            Err(panic) if is_opening => bail!(
+                "the display {} cannot open a window: {}; use another display, or {REMEDY}",
+                display(),
+                panic_text(panic.as_ref())
+            ),
+            Err(panic) => resume_unwind(panic),
+        };
+        match outcome {
             Ok(()) if interrupt.is_set() => return Ok(interrupt.exit_code()),
             Ok(()) => return Ok(ExitCode::SUCCESS),
             // The window system's own message names places in its source code, and another renderer would not help.

@@ -155,6 +155,8 @@ pub struct WindowOptions {
     pub stop: Option<Stop>,
     /// The film to resume.
     pub resume: Option<PathBuf>,
+    /// Whether the picture was read from a film or another picture.
+    pub is_saved: bool,
     /// Whether to open the usual first picture instead of the last one.
     pub is_fresh: bool,
     /// Tracing time between autosaves.
@@ -254,6 +256,7 @@ fn window(flags: RenderFlags, opened: Option<&Path>, matches: &ArgMatches) -> Re
         is_size_given: picture.size.is_some(),
         is_picture_given: picture.is_given() || saved.is_some() || samples.estimate_error.is_some(),
         is_device_given: backend::FLAGS.into_iter().any(|flag| is_given(matches, flag)),
+        is_saved: saved.is_some() && !picture.has_source(),
         resume: files.resume.clone(),
         is_fresh: flags.fresh,
         autosave_every: flags.autosave_every,

@@ -243,7 +243,7 @@ mod tests {
         let bounded = Bounded::all(&spheres, &DVec3::ZERO);
         let go_on = AtomicBool::new(false);
         let tree = in_walking_order(parted::build(&bounded, 1, false, &go_on));
-        assert!(depth(&tree.nodes) > 30, "{}", depth(&tree.nodes));
+        assert!(depth(&tree.nodes) > 8, "{}", depth(&tree.nodes));
         let tree = in_walking_order(parted::build(&bounded, 1, true, &go_on));
         assert_eq!(depth(&tree.nodes), 8);
     }

@@ -162,7 +162,7 @@ impl<R: Real> PreparedScene<R> {
                 Tree::Thorough => Hierarchy::build_unless(cancel, spheres, groups.origin, Effort::Thorough),
                 Tree::Wide => Hierarchy::build_wide(cancel, spheres, groups.origin),
             }?;
-            listed = built.ranks.iter().map(|rank| listed[*rank as usize]).collect();
+            listed = built.ranks.par_iter().map(|rank| listed[*rank as usize]).collect();
             hierarchy = Some(built);
             hierarchy_source = HierarchySource::Built(begin.elapsed());
         }

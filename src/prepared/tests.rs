@@ -95,8 +95,8 @@ fn validate_hierarchy<R: Real>(
         let has_one_root = radius2.to_f64() < 0.0;
         ensure!(has_one_root == ((*rank as usize) < one_root), "sphere {number} has a wrong number of roots");
     }
-    if wide.is_some() {
-        // Its nodes are checked whenever they are built.
+    if wide.is_some() || nodes.is_empty() {
+        // The GPU's nodes are checked when they are built, and are later on the device only.
         return Ok(());
     }
     let (mut reached, mut held) = (0, vec![false; spheres.len()]);

@@ -46,6 +46,14 @@ pub struct Viewport {
     pointer: Option<[f64; 2]>,
 }
 
+/// The picture in words, for those who cannot see it.
+fn description(document: &Document) -> String {
+    match document.stage().filter(|_| !document.is_changed()) {
+        Some(stage) => format!("{}. {}", document.heading(), stage.alt),
+        None => document.heading(),
+    }
+}
+
 impl Viewport {
     /// Where a new sphere goes: the pointer's place in the picture; without one, the ground before the camera.
     pub fn aim(&self) -> [f64; 2] {
@@ -66,6 +74,7 @@ impl Viewport {
         let room = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(room, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(description(live)));
         let rect = self.place(ui, room, cx);
         let mut touch = Touch::default();
         let is_wipe = view.mode() == Some(Mode::Wipe);

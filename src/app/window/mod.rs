@@ -285,7 +285,7 @@ impl Window {
 fn document_of(options: &WindowOptions) -> Document {
     let WindowOptions { recipe, unchanged, stage, file, stop, .. } = options;
     let origin = match (stage, file, Recipe::builtin(&recipe.name)) {
-        (_, None, _) if options.resume.is_some() => Origin::guess(unchanged, *stage),
+        (_, None, _) if options.is_saved => Origin::guess(unchanged, *stage),
         (Some(stage), _, _) => Origin::of_stage(stage),
         (None, Some(path), _) => Origin::new(unchanged.clone(), Source::File(path.clone())),
         (None, None, Some(builtin)) => Origin::of_builtin(builtin),
@@ -294,7 +294,7 @@ fn document_of(options: &WindowOptions) -> Document {
     let mut document = Document::new(origin);
     document.camera = recipe.camera;
     document.settings = recipe.settings;
-    document.has_own_size |= options.is_size_given || options.resume.is_some();
+    document.has_own_size |= options.is_size_given || options.is_saved || options.resume.is_some();
     document.stop = stop.unwrap_or(document.origin.usual_stop());
     document
 }

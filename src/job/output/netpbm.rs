@@ -121,7 +121,7 @@ fn integers(
     if outside > 0 {
         damages.push(Damage::new(
             format!("{outside} numbers are below 0 or above {most}"),
-            "clamp each channel before it is scaled: int(256 * clamp(x, 0, 0.999)); negative ones often were NaN",
+            "clamp each channel before it is scaled: int(256 * clamp(x, 0, 0.999)); negative integers often come from NaN",
         ));
     }
     let value = |pixel: &[i64], channel: usize| pixel[channel.min(channels - 1)].clamp(0, most.into()) as u16;
@@ -250,7 +250,7 @@ fn floats(mut words: Words, channels: usize) -> Result<ReadPicture> {
     let is_swapped = 2 * usual(declared) < count && usual(!declared) == count;
     let mut notes = Vec::new();
     let mut note = |is_so: bool, text: String| notes.extend(is_so.then_some(text));
-    note(is_swapped, "its numbers have the other byte order than its scale says".to_owned());
+    note(is_swapped, "its numbers have the other byte order, not the one that its scale states".to_owned());
     note(scale.abs() != 1.0, format!("its values are multiplied by its scale, {}", scale.abs()));
     let after = data.len() - pixels.len();
     note(after > 0, format!("{after} bytes after the pixels are ignored"));
