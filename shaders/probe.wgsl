@@ -41,12 +41,11 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
             let key = pixel_key(words[base], words[base + 1u], words[base + 2u]);
             let counter = words[base + 3u];
             let bounce = words[base + 4u];
-            let first = sobol_pair(counter, stream_of(key, bounce));
-            let second = sobol_pair(counter, lens_stream_of(key, bounce));
-            words[base] = first.x;
-            words[base + 1u] = first.y;
-            words[base + 2u] = second.x;
-            words[base + 3u] = second.y;
+            let drawn = numbers(words[base], words[base + 2u], counter, key, bounce, true);
+            words[base] = drawn.x;
+            words[base + 1u] = drawn.y;
+            words[base + 2u] = drawn.z;
+            words[base + 3u] = drawn.w;
         }
         case PROBE_SIN_COS: {
             let u = unit_float(words[base]);

@@ -17,7 +17,8 @@ pub struct Stop {
     /// Target RMSE in linear radiance, as estimated from the halves: see [`crate::film::Film::meets`]. Needs a film with
     /// two halves.
     pub noise: Option<f64>,
-    /// Whether the picture is denoised. The target is then for [`crate::denoise::DenoisedError::upper_rmse`].
+    /// Whether the picture is denoised. The target is then for the denoised picture, if that is
+    /// better than the raw one.
     pub is_denoised: bool,
 }
 

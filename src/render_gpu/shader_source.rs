@@ -60,7 +60,7 @@ const SHARED: [&str; 10] = [
 pub enum Probe {
     /// `pcg4d`.
     Pcg4d,
-    /// `pixel_key`, `stream_of`, `lens_stream_of` and `sobol_pair`.
+    /// `pixel_key` and `numbers` of the Sobol sampler.
     Sobol,
     /// `unit_float` and `sin_cos_turns`.
     SinCos,
