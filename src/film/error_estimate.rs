@@ -142,7 +142,7 @@ impl Film {
 
     /// The parts of the squared difference between the halves that are the variance of each. Where one half has more
     /// samples, how much less its variance is depends on the sampler and the scene. The steps from pixel to pixel tell:
-    /// both halves have the same steps but for their noise.
+    /// apart from their noise, both halves have the same steps.
     pub(crate) fn variance_shares(&self) -> [f64; 2] {
         let counts = [0, 1].map(|half| self.half_sample_count(half));
         let [a, b] = counts.map(|count| count as f64 * FIXED_POINT_SCALE);
