@@ -298,7 +298,7 @@ fn trace<L: Lanes<Real = f32>>(l: L, refill: bool, scene: &BroadcastScene<f32>, 
         }
         let new = l.mask(started);
         stream = new.select(key, stream + l.load_u(&scene.stream_stride));
-        let [drawn, _] = numbers(l, settings, pixel, counter, stream, false);
+        let [drawn, _] = numbers(l, settings, pixel, counter, key, stream, false);
         let [u0, u1] = [unit_float(l, drawn[0]), unit_float(l, drawn[1])];
 
         // The next rays: from the hits, or from the camera.

@@ -26,7 +26,8 @@ pub enum NoiseOf {
     /// The film: see [`crate::film::Film::meets`].
     #[default]
     Film,
-    /// The denoised picture: see [`crate::denoise::DenoisedError::upper_rmse`].
+    /// The picture that is written with denoising: the denoised one, or the raw one if that is better. See
+    /// [`crate::denoise::DenoisedError::upper_rmse`].
     Denoised,
 }
 

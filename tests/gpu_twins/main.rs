@@ -13,11 +13,11 @@ mod surfaces;
 
 use glam::DVec3;
 use gpu_common::program::Programs;
-use oracle::{laine_karras, pascal, pixel_key, sin_cos_turns, unit_float};
+use oracle::{pixel_key, sin_cos_turns, sobol_numbers, unit_float};
 use probe::{PROBE_STRIDE, Probe};
 use weekender::film::FIXED_POINT_MAX;
 use weekender::job::render::{RenderJob, RenderSettings};
-use weekender::kernel::sampling::{GOLDEN_RATIO, LENS_BLOCK, mix32, pcg4d};
+use weekender::kernel::sampling::pcg4d;
 use weekender::kernel::{AnchoredSphere, CameraTable};
 use weekender::render_cpu::camera::{lens_ray, pinhole_ray, screen};
 use weekender::render_cpu::lanes::{Scalar, Single, V3, Wide, Word};

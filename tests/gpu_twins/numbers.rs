@@ -18,11 +18,7 @@ fn integers_are_equal_to_the_bit() {
     for (input, output) in run(&gpu, laws, Probe::Sobol, random) {
         let [seed, half, pixel, counter, bounce] = [0, 1, 2, 3, 4].map(|i| input[i]);
         let key = pixel_key(seed, half, pixel);
-        let pair = |block: u32| {
-            let u = laine_karras(counter, mix32(key.wrapping_add(block.wrapping_mul(GOLDEN_RATIO))));
-            [u, pascal(u)]
-        };
-        assert_eq!(output[..4], [pair(bounce), pair(bounce.wrapping_add(LENS_BLOCK))].concat());
+        assert_eq!(output[..4], sobol_numbers(key, counter, bounce));
     }
     let rounded = |i: u32| {
         let x = match i {

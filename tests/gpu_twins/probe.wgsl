@@ -41,12 +41,11 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
             let key = pixel_key(scratch[base], scratch[base + 1u], scratch[base + 2u]);
             let counter = scratch[base + 3u];
             let bounce = scratch[base + 4u];
-            let first = sobol_pair(counter, stream_of(key, bounce));
-            let second = sobol_pair(counter, lens_stream_of(key, bounce));
-            scratch[base] = first.x;
-            scratch[base + 1u] = first.y;
-            scratch[base + 2u] = second.x;
-            scratch[base + 3u] = second.y;
+            let drawn = numbers(scratch[base], scratch[base + 2u], counter, key, bounce, true);
+            scratch[base] = drawn.x;
+            scratch[base + 1u] = drawn.y;
+            scratch[base + 2u] = drawn.z;
+            scratch[base + 3u] = drawn.w;
         }
         case PROBE_SIN_COS: {
             let u = unit_float(scratch[base]);

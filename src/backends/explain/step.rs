@@ -108,7 +108,8 @@ fn coin(settings: &RenderSettings, pixel: u32, index: u64, ray: u32) -> f64 {
     let (counter, _) = SampleBlock { half, first, count: 1 }.counter(settings);
     let camera_stream = rng::sampler_key(lane, HalfKey::new(settings, half), Word(pixel));
     let stream = camera_stream + Word(stream_stride(settings.sampler).wrapping_mul(ray));
-    let [[first, _], _] = rng::numbers(lane, settings, Word(pixel), Word(counter), stream, false);
+    let numbers = rng::numbers(lane, settings, Word(pixel), Word(counter), camera_stream, stream, false);
+    let [[first, _], _] = numbers;
     f64::from(unit_float(lane, first).0)
 }
 

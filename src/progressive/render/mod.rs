@@ -378,14 +378,16 @@ impl Render {
         }
     }
 
-    /// Whether the film meets the noise target, by its latest estimate.
+    /// Whether the picture that the film gives, denoised or not, meets the noise target by its latest estimate. While the
+    /// film's own error is doubtful, so is that of the denoised picture.
     fn meets_noise_target(&self) -> bool {
-        let error = self.status.error.as_ref();
+        let Some(target) = self.plan.stop.noise else { return false };
+        let film_meets = || self.film.meets(target, self.status.error.as_ref(), self.brightest());
         self.film.sample_count() >= NOISE_TARGET_FIRST_SAMPLES
-            && self.plan.stop.noise.is_some_and(|target| {
-                self.film.meets(target, error, self.brightest())
-                    || self.status.denoised.is_some_and(|error| error.upper_rmse() <= target)
-            })
+            && match self.status.denoised {
+                Some(denoised) => denoised.meets(target) && (self.status.doubt.is_none() || film_meets()),
+                None => film_meets(),
+            }
     }
 
     /// The largest radiance that a sample can have.
