@@ -7,7 +7,9 @@ mod png;
 mod ppm;
 mod read;
 
-pub use read::{Damage, Encoding, Linear, ReadPicture, Values, decode_picture, displayed, read_picture};
+pub use read::{
+    Damage, Encoding, Incomplete, Linear, ReadPicture, Values, decode_picture, displayed, read_picture,
+};
 
 pub use crate::film::{Description, RECIPE_KEY, key};
 

@@ -36,6 +36,22 @@ impl Damage {
     }
 }
 
+/// The error of a file that ends before its last pixel.
+#[derive(Clone, Debug)]
+pub struct Incomplete {
+    /// With the pixels that there are, fewer than its size says.
+    pub picture: Box<ReadPicture>,
+    pub reason: String,
+}
+
+impl std::fmt::Display for Incomplete {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str(&self.reason)
+    }
+}
+
+impl std::error::Error for Incomplete {}
+
 /// A picture as its file holds it, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadPicture {
@@ -110,8 +126,14 @@ fn half_step(x: f32) -> f64 {
 /// If the file cannot be read or is not such a picture.
 pub fn read_picture(path: &Path, layer: Option<&str>) -> Result<ReadPicture> {
     let (file, length) = files::open(path)?;
-    decode_picture(BufReader::new(file), length, layer)
-        .map_err(|reason| anyhow!("cannot read {}: {reason}", path.shown()))
+    decode_picture(BufReader::new(file), length, layer).map_err(|error| {
+        match error.downcast::<Incomplete>() {
+            Ok(Incomplete { picture, reason }) => {
+                Incomplete { picture, reason: format!("cannot read {}: {reason}", path.shown()) }.into()
+            }
+            Err(reason) => anyhow!("cannot read {}: {reason}", path.shown()),
+        }
+    })
 }
 
 /// As [`read_picture`], from a reader of `length` bytes.
