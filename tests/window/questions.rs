@@ -185,7 +185,7 @@ impl Ask for Window {
     }
 
     fn inspected(&self) -> Option<([u32; 2], [f64; 3])> {
-        self.tools.inspector.pixel().map(|pixel| (pixel.at, pixel.mean))
+        self.tools.inspector.readout().map(|readout| (readout.pixel.at, readout.pixel.mean))
     }
 
     fn is_presenting(&self) -> bool {

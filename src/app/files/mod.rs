@@ -2,6 +2,8 @@
 //! separate thread reads. A size that is not on the screen is rendered first, beside the picture.
 
 pub mod autosave;
+pub mod edits;
+mod note;
 pub mod scene_file;
 
 use crate::app::commands::table::Command;

@@ -35,6 +35,24 @@ impl Changes {
         Changes { history, last: document, moved: None, has_moved: false, is_in_gesture: false }
     }
 
+    /// A history of these documents, oldest first; the last one is shown.
+    pub fn of_steps(steps: &[Document], shown: Document) -> Self {
+        let mut changes = Changes::new(steps.first().unwrap_or(&shown).clone());
+        steps.iter().for_each(|step| changes.history.add_undo(step));
+        Changes { last: shown, ..changes }
+    }
+
+    /// The document, and at most `count` states before it, oldest first.
+    pub fn last_steps(&self, document: &Document, count: usize) -> Vec<Document> {
+        let (mut history, mut steps) = (self.history.clone(), vec![document.clone()]);
+        while steps.len() <= count
+            && let Some(earlier) = history.undo(&steps[0])
+        {
+            steps.insert(0, earlier.clone());
+        }
+        steps
+    }
+
     /// What [`Changes::undo`] brings back.
     pub fn earlier(&self, document: &Document) -> Option<Document> {
         self.history.clone().undo(document).cloned()

@@ -55,6 +55,8 @@ pub struct Touch {
     pub is_move: bool,
     /// The pixel under the pointer.
     pub hovered: Option<[u32; 2]>,
+    /// The other picture of a comparison lies over it.
+    pub is_over_other: bool,
     /// What a click has done, or why it does nothing, in words.
     pub said: Option<String>,
 }
@@ -107,6 +109,7 @@ impl Viewport {
         self.pointer = response.hover_pos().filter(|at| rect.contains(*at)).map(|at| place_at(rect, at));
         let pixel = |at| self.placement.pixel_at(at, document.size());
         touch.hovered = response.hover_pos().and_then(pixel);
+        touch.is_over_other = is_wipe && response.hover_pos().is_some_and(|at| at.x < own.left());
         if response.secondary_clicked()
             && let Some(at) = response.interact_pointer_pos().filter(|at| rect.contains(*at))
             && live.no_rays().is_none()

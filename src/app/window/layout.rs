@@ -7,7 +7,6 @@ use crate::app::panels::{bar, controls, first_steps, present, right, stage_panel
 use crate::app::toolkit::theme;
 use crate::app::tools::dock;
 use crate::app::tools::inspector::Inspector;
-use crate::app::tools::paths::at_same_place;
 use crate::app::tracing::second::Second;
 use crate::app::viewport::display::Display;
 use crate::app::viewport::{Pictures, Touch};
@@ -140,7 +139,7 @@ impl Window {
                 numbers(ui, facts, display, &tracing.second, &tools.inspector);
             });
         }
-        self.tools.inspector.hover(touch.hovered);
+        self.tools.inspector.hover(touch.hovered, touch.is_over_other);
         if let Some(said) = touch.said {
             self.shell.toasts.good(said);
         }
@@ -166,11 +165,13 @@ fn titles(facts: &Facts, second: &Second) -> [String; 2] {
 /// The numbers of the pixel under the pointer.
 fn numbers(ui: &mut Ui, facts: &Facts, display: &Display, second: &Second, inspector: &Inspector) {
     let view = &facts.model.view;
-    let at = inspector.pixel().map(|pixel| pixel.at);
+    let at = inspector.readout().map(|readout| readout.pixel.at);
     let value = at.filter(|_| view.show().layer().is_some()).and_then(|at| display.layers.value_at(at));
-    let size = facts.document().size();
-    let other = at
-        .zip(second.means(view))
-        .and_then(|(at, means)| means.mean(at_same_place(at, [size, [means.width, means.height]])));
-    inspector.ui(ui, facts.document(), value, other);
+    let (mine, other) = (facts.document(), second.film(view));
+    let theirs = match view.compared_kept() {
+        Some(kept) => view.kept.short_title(kept),
+        None => other.map(|other| other.document().place()).unwrap_or_default(),
+    };
+    let documents = [other.as_ref().map_or(mine, |other| other.document()), mine];
+    inspector.ui(ui, [&theirs, &mine.place()], documents, view.mode(), value);
 }

@@ -11,7 +11,7 @@ mod shell;
 use crate::app::commands::facts::Facts;
 use crate::app::commands::table::Command;
 use crate::app::files::Files;
-use crate::app::files::autosave::{Autosave, picture_of};
+use crate::app::files::autosave::{Autosave, Last};
 use crate::app::model::changes::Changes;
 use crate::app::model::{Device, DeviceOptions, Document, Model, Origin, Source, Stored, Tab, ViewState};
 use crate::app::toolkit::theme;
@@ -68,29 +68,33 @@ impl Window {
         if let Some(file) = &options.file {
             remembered.note_recent(file);
         }
-        let mut autosave = Autosave::new(options.state_directory.as_deref(), options.autosave_every);
-        let last = autosave.last().filter(|_| !options.is_fresh && !options.is_picture_given);
-        let last = last.and_then(|path| Some((picture_of(&path)?.0, path)));
-        let mut document = match &last {
-            Some((document, _)) => document.clone(),
+        let goes_on = !options.is_fresh && !options.is_picture_given;
+        let directory = options.state_directory.as_deref();
+        let (autosave, Last { steps, film, has_ended_early }) =
+            Autosave::new(directory, options.autosave_every, goes_on);
+        let mut document = match steps.last() {
+            Some(document) => document.clone(),
             None if options.is_picture_given => document_of(&options),
             None => Document::new(Origin::usual()),
         };
         document.stop = options.stop.unwrap_or(document.stop);
-        autosave.is_restoring = last.is_some();
         let mut files = Files::default();
-        files.pending_resume = match (options.resume, last) {
+        files.pending_resume = match (options.resume, film) {
             (Some(path), _) => Some((path, options.recipe.job()?)),
-            (None, Some((document, path))) => Some((path, document.job(1)?)),
+            (None, Some(path)) => Some((path, document.job(1)?)),
             (None, None) => None,
         };
+        let mut shell = Shell { crashes_at: options.crashes_at, ..Shell::default() };
+        if has_ended_early && !steps.is_empty() {
+            shell.toasts.good("The last window ended early. This is the picture that it showed");
+        }
         let create = |path: &PathBuf| {
             FrameLog::create(path).with_context(|| format!("cannot write {}", path.display()))
         };
-        let frame_log = options.frame_log.as_ref().map(create).transpose()?;
+        shell.frame_log = options.frame_log.as_ref().map(create).transpose()?;
         let view = if options.is_fresh || options.is_picture_given { ViewState::default() } else { view };
         Ok(Window {
-            changes: Changes::new(document.clone()),
+            changes: Changes::of_steps(&steps, document.clone()),
             model: Model {
                 document,
                 selected: None,
@@ -108,7 +112,7 @@ impl Window {
             tools: Tools::default(),
             files,
             autosave,
-            shell: Shell { frame_log, crashes_at: options.crashes_at, ..Shell::default() },
+            shell,
             commands: Vec::new(),
         })
     }
@@ -239,6 +243,7 @@ impl Window {
             self.shell.toasts.bad(error.to_string());
             self.model.document.camera = self.changes.last.camera;
         }
+        self.shell.toasts.follow(&self.model.document);
         self.ask_about_size();
         let document = &self.model.document;
         // A picture without noise ends at its own number of samples, whatever the user prefers.
@@ -261,7 +266,7 @@ impl Window {
         }
         self.leave_useless_views();
         let has_second = self.tracing.follow(context, &self.model, &self.changes);
-        let Window { model, tracing, display, tools, files, autosave, shell, .. } = self;
+        let Window { model, changes, tracing, display, tools, files, autosave, shell, .. } = self;
         display.follow(context, model, tracing, is_moving, &mut shell.toasts);
         let subject = Subject::new(&model.view, &model.document, tracing);
         if let Some(found) = display.denoising.follow(context, &subject, model.view.is_denoised) {
@@ -270,9 +275,7 @@ impl Window {
         let subject = Subject::new(&model.view, &model.document, tracing);
         files.follow(context, &subject);
         files.follow_sized(context, &mut shell.toasts);
-        if !autosave.is_restoring
-            && let Some(reason) = autosave.follow(context, &model.document, tracing)
-        {
+        if let Some(reason) = autosave.follow(context, (&model.document, changes), tracing) {
             let words =
                 format!("Not saved by itself: {reason}; rendering goes on, and saving is tried again");
             shell.toasts.bad(words);
@@ -314,7 +317,7 @@ impl Drop for Window {
 
 impl Window {
     fn end(&mut self) {
-        self.autosave.end(&self.model, &mut self.tracing);
+        self.autosave.end(&self.model, &self.changes, &mut self.tracing);
     }
 }
 

@@ -15,6 +15,7 @@ impl Window {
         while let Some(outcome) = self.files.saved.take() {
             match outcome {
                 Ok(path) => {
+                    self.shell.toasts.end_error("Not saved");
                     self.model.remembered.note_recent(&path);
                     let name = path.file_name().unwrap_or(path.as_os_str()).display();
                     self.shell.toasts.good_with(format!("Saved {name}"), &[Command::ShowInFolder]);
@@ -64,7 +65,8 @@ impl Window {
     }
 
     fn show_opened(&mut self, Opened { path, recipe, saved, .. }: Opened) {
-        let is_left = self.autosave.left().as_ref() == Some(&path);
+        self.shell.toasts.end_error("Not opened");
+        let is_left = self.autosave.is_answered(&path);
         let mut document = match &saved {
             None => Document::new(Origin::new(recipe, Source::File(path.clone()))),
             Some(saved) => document_of(saved, &recipe),
