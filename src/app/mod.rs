@@ -17,7 +17,7 @@ mod tracing;
 mod viewport;
 mod window;
 
-pub use commands::table::{Command, MENUS, ROWS};
+pub use commands::{Command, MENUS, ROWS};
 pub use eframe::egui::ThemePreference as Theme;
 pub use model::{Device, Dock, Document, Origin, Remembered, Show, Sizing, Source, Tab};
 pub use window::Window;
@@ -154,7 +154,7 @@ fn display() -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::commands::facts::Facts;
+    use super::commands::Snapshot;
     use super::*;
     use crate::cli::{Request, parse};
     use egui_kittest::{Harness, HarnessBuilder};
@@ -171,9 +171,9 @@ mod tests {
         }
     }
 
-    /// What the window of a command line knows before its first frame.
-    pub(super) fn facts_of(words: &str) -> Facts {
-        window(&format!("weekender {words} --device cpu")).facts()
+    /// A snapshot of the window of a command line before its first frame.
+    pub(super) fn snapshot_of(words: &str) -> Snapshot {
+        window(&format!("weekender {words} --device cpu")).snapshot()
     }
 
     /// What draws a part of the window with the window's own style, which is dark.

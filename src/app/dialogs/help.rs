@@ -1,7 +1,7 @@
 //! The dialog that lists keys and mouse actions.
 
-use super::Outcome;
-use crate::app::commands::table::{ROWS, Row};
+use super::outcome::Outcome;
+use crate::app::commands::{ROWS, Row};
 use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::caption;
 use eframe::egui::{Context, Frame, Margin, RichText, ScrollArea, Sides, Ui};

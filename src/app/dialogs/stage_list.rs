@@ -1,9 +1,8 @@
 //! The list of stages: a field to search in, chapters as headings, and the extreme scenes.
 
-use super::Outcome;
-use crate::app::commands::facts::Facts;
-use crate::app::commands::table::Command;
-use crate::app::toolkit::finder::Finder;
+use super::outcome::Outcome;
+use crate::app::commands::{Command, PanelContext, Snapshot};
+use crate::app::toolkit::Finder;
 use crate::app::toolkit::widgets::{caption, choice, tip};
 use crate::measure::stress::shown_cases;
 use crate::stages::Stage;
@@ -57,16 +56,13 @@ fn found(typed: &str) -> Vec<Command> {
 }
 
 /// The list at the picture that is shown, or at its end.
-pub fn list(facts: &Facts, is_at_end: bool) -> Finder {
-    let is_first = |row| match is_at_end {
-        true => heading_of(row) == LAST_HEADING,
-        false => facts.is_on(row),
-    };
+pub fn list(snapshot: &Snapshot, is_at_end: bool) -> Finder {
+    let is_first = |row| if is_at_end { heading_of(row) == LAST_HEADING } else { snapshot.is_on(row) };
     Finder::at(rows().position(is_first).unwrap_or(0))
 }
 
 /// Draws the list. Arrow keys go through it, typing leaves what has these words, and Enter chooses.
-pub fn ui(finder: &mut Finder, ui: &mut Ui, height: f32, facts: &Facts) -> Outcome {
+pub fn ui(finder: &mut Finder, ui: &mut Ui, height: f32, cx: &PanelContext) -> Outcome {
     ui.set_width(WIDTH);
     // Tips stand beside what clips a column.
     let column = Rect::from_min_size(ui.min_rect().min, vec2(WIDTH, f32::INFINITY)).expand(6.0);
@@ -89,7 +85,7 @@ pub fn ui(finder: &mut Finder, ui: &mut Ui, height: f32, facts: &Facts) -> Outco
     };
     let (found, run) = finder.ui(ui, words, height, found, draw);
     run.map_or(Outcome::Stay, |run| {
-        facts.send(found[run]);
+        cx.send(found[run]);
         Outcome::Close
     })
 }

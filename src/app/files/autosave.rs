@@ -6,7 +6,7 @@ use super::edits::{self, STEPS};
 use super::note::Note;
 use crate::app::model::changes::Changes;
 use crate::app::model::{CheckedScene, Document, Model, Origin};
-use crate::app::toolkit::answers::Answers;
+use crate::app::toolkit::Answers;
 use crate::app::tracing::Tracing;
 use crate::film::{Description, Film, checkpoint};
 use crate::job::recipe::Recipe;
@@ -169,7 +169,8 @@ pub struct Autosave {
     /// By run and samples per pixel.
     films: Writing<(u64, u64)>,
     edits: Writing<Document>,
-    /// Files of a window that ended early with which the user goes on.
+    /// The file of a window that ended early that is offered, and those with which the user goes on.
+    offered: Option<PathBuf>,
     answered: Vec<PathBuf>,
     /// The film of the last window is read, and must not be replaced before.
     pub is_restoring: bool,
@@ -206,21 +207,30 @@ impl Autosave {
             every,
             films: Writing::default(),
             edits: Writing::default(),
+            offered: None,
             answered: Vec::new(),
             is_restoring: last.film.is_some(),
         };
         (autosave, last)
     }
 
-    /// The newest file of windows that ended early about which the user has said nothing yet.
-    pub fn left(&self) -> Option<PathBuf> {
+    /// The next file of windows that ended early about which the user has said nothing yet, newest first: its document, and
+    /// samples per pixel if it is a film.
+    pub fn offer(&mut self) -> Option<(Document, Option<u64>)> {
         let entries = fs::read_dir(&self.place.as_ref()?.directory).ok()?;
         let is_left = |path: &PathBuf| {
             let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
             name.starts_with(LEFT) && !self.is_answered(path)
         };
-        let paths = entries.flatten().map(|entry| entry.path()).filter(is_left);
-        paths.max_by_key(|path| fs::metadata(path).and_then(|found| found.modified()).ok())
+        let mut paths: Vec<_> = entries.flatten().map(|entry| entry.path()).filter(is_left).collect();
+        paths.sort_by_key(|path| fs::metadata(path).and_then(|found| found.modified()).ok());
+        let offer = |path: PathBuf| {
+            let film = picture_of(&path).map(|(document, samples)| (document, Some(samples)));
+            Some((film.or_else(|| Some((edits::read(&path).pop()?, None)))?, path))
+        };
+        let (found, path) = paths.into_iter().rev().find_map(offer)?;
+        self.offered = Some(path);
+        Some(found)
     }
 
     /// Whether the user goes on with this file of a window that ended early.
@@ -228,16 +238,21 @@ impl Autosave {
         self.answered.iter().any(|answered| answered == path)
     }
 
-    /// The user goes on with the newest such file, which is deleted once this window has ended in order.
-    pub fn take_left(&mut self) -> Option<PathBuf> {
-        let path = self.left()?;
+    /// The user goes on with the file that was offered. It is deleted when this window ends in order.
+    pub fn take_offered(&mut self) -> Option<PathBuf> {
+        let path = self.offered.take()?;
         self.answered.push(path.clone());
         Some(path)
     }
 
-    /// The user wants the newest such file deleted.
-    pub fn delete_left(&mut self) {
-        self.left().into_iter().for_each(|path| drop(fs::remove_file(path)));
+    /// The user wants the file deleted that was offered.
+    pub fn delete_offered(&mut self) {
+        self.offered.take().into_iter().for_each(|path| drop(fs::remove_file(path)));
+    }
+
+    /// Whether the last try to write something has failed.
+    pub fn has_failed(&self) -> bool {
+        self.films.has_failed || self.edits.has_failed
     }
 
     /// Saves what has been edited, and the film if it is time. Returns why something could not be written, once.

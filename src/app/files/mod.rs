@@ -6,10 +6,9 @@ pub mod edits;
 mod note;
 pub mod scene_file;
 
-use crate::app::commands::table::Command;
+use crate::app::commands::Command;
 use crate::app::model::Document;
-use crate::app::toolkit::answers::Answers;
-use crate::app::toolkit::toasts::Toasts;
+use crate::app::toolkit::{Answers, Toasts};
 use crate::app::tracing::subject::Subject;
 use crate::backends::BackendChoice;
 use crate::cli::{CompanionOptions, ProgressChoice};

@@ -1,8 +1,7 @@
 //! The scene file of the picture is read again when another program has changed it.
 
 use crate::app::model::{Origin, Source, stamp_of};
-use crate::app::toolkit::answers::Answers;
-use crate::app::window::Window;
+use crate::app::toolkit::Answers;
 use crate::job::recipe::{Recipe, file};
 use eframe::egui::Context;
 use std::path::Path;
@@ -16,11 +15,11 @@ const LOOKS_APART: Duration = Duration::from_millis(500);
 pub struct SceneFile {
     /// The origin whose file is watched, until the token is dropped.
     watched: Option<(Arc<Origin>, Arc<()>)>,
-    reread: Answers<Recipe>,
+    pub reread: Answers<Recipe>,
 }
 
 impl SceneFile {
-    fn watch(&mut self, context: &Context, origin: &Arc<Origin>) {
+    pub fn watch(&mut self, context: &Context, origin: &Arc<Origin>) {
         if self.watched.as_ref().is_some_and(|(watched, _)| Arc::ptr_eq(watched, origin)) {
             return;
         }
@@ -56,29 +55,5 @@ fn look_repeatedly(path: &Path, needed: &Weak<()>, report: impl Fn(&Path)) {
             report(path);
         }
         last = now;
-    }
-}
-
-impl Window {
-    /// Watches the scene file, and takes what was read from it again.
-    pub(in crate::app) fn follow_scene_file(&mut self, context: &Context) {
-        let origin = Arc::clone(&self.document().origin);
-        self.files.scene_file.watch(context, &origin);
-        let Source::File(path) = &origin.source else { return };
-        let name = path.file_name().unwrap_or(path.as_os_str()).display();
-        while let Some(recipe) = self.files.scene_file.reread.take() {
-            let is_own = self.document().checked.file().is_some_and(|saved| saved == *path);
-            match recipe {
-                _ if is_own => {}
-                Ok(recipe) => {
-                    let reloaded = self.document().reloaded(recipe);
-                    self.show_document(reloaded);
-                    self.shell.toasts.good(format!("Reloaded {name}; Undo returns"));
-                }
-                Err(reason) => self.shell.toasts.bad(format!(
-                    "Not reloaded: {reason}. The picture shows the last version that could be read"
-                )),
-            }
-        }
     }
 }

@@ -2,19 +2,21 @@
 
 use super::Document;
 use eframe::egui::Context;
-use eframe::egui::util::undoer::{Settings, Undoer};
+use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 /// After this long without a move the picture is rendered at its full size.
 const SETTLE: Duration = Duration::from_millis(160);
 
-/// So many changes can be undone.
+/// Maximum number of undo steps.
 const STEPS: usize = 100;
 
 /// The history of the document.
 pub struct Changes {
-    /// The document at the end of each change or gesture.
-    history: Undoer<Document>,
+    /// The document at the end of each change or gesture, oldest first.
+    done: VecDeque<Document>,
+    /// The documents that were undone, the next one to redo last.
+    undone: Vec<Document>,
     /// The document of the frame before.
     pub last: Document,
     moved: Option<Instant>,
@@ -27,50 +29,53 @@ pub struct Changes {
 impl Changes {
     /// A history that starts with `document`.
     pub fn new(document: Document) -> Self {
-        // A step ends with its gesture, not after some time.
-        let never = f32::INFINITY;
-        let settings = Settings { max_undos: STEPS, stable_time: never, auto_save_interval: never };
-        let mut history = Undoer::with_settings(settings);
-        history.add_undo(&document);
-        Changes { history, last: document, moved: None, has_moved: false, is_in_gesture: false }
+        let (done, undone) = ([document.clone()].into(), Vec::new());
+        Changes { done, undone, last: document, moved: None, has_moved: false, is_in_gesture: false }
     }
 
-    /// A history of these documents, oldest first; the last one is shown.
+    /// A history of these documents, oldest first; `shown` is the last one.
     pub fn of_steps(steps: &[Document], shown: Document) -> Self {
         let mut changes = Changes::new(steps.first().unwrap_or(&shown).clone());
-        steps.iter().for_each(|step| changes.history.add_undo(step));
+        steps.iter().for_each(|step| end_step(&mut changes.done, step));
         Changes { last: shown, ..changes }
     }
 
     /// The document, and at most `count` states before it, oldest first.
     pub fn last_steps(&self, document: &Document, count: usize) -> Vec<Document> {
-        let (mut history, mut steps) = (self.history.clone(), vec![document.clone()]);
-        while steps.len() <= count
-            && let Some(earlier) = history.undo(&steps[0])
-        {
-            steps.insert(0, earlier.clone());
-        }
-        steps
+        let mut done = self.done.clone();
+        end_step(&mut done, document);
+        done.drain(..done.len().saturating_sub(count + 1));
+        done.into()
     }
 
-    /// What [`Changes::undo`] brings back.
-    pub fn earlier(&self, document: &Document) -> Option<Document> {
-        self.history.clone().undo(document).cloned()
+    /// What undo and redo would change, in words.
+    pub fn labels(&self, document: &Document) -> [Option<&'static str>; 2] {
+        [self.earlier(document), self.later(document)].map(|other| Some(document.difference(other?)))
     }
 
-    /// What [`Changes::redo`] brings back.
-    pub fn later(&self, document: &Document) -> Option<Document> {
-        self.history.clone().redo(document).cloned()
+    fn earlier(&self, document: &Document) -> Option<&Document> {
+        self.done.iter().rev().take(2).find(|done| *done != document)
+    }
+
+    fn later(&self, document: &Document) -> Option<&Document> {
+        self.undone.last().filter(|_| self.done.back() == Some(document))
     }
 
     /// Undoes the last change.
     pub fn undo(&mut self, document: &mut Document) {
-        self.history.undo(document).cloned().into_iter().for_each(|earlier| restore(document, earlier));
+        let Some(earlier) = self.earlier(document).cloned() else { return };
+        if self.done.back() == Some(&*document) {
+            self.done.pop_back();
+        }
+        self.undone.push(document.clone());
+        restore(document, earlier);
     }
 
     /// Redoes the change that was undone last.
     pub fn redo(&mut self, document: &mut Document) {
-        self.history.redo(document).cloned().into_iter().for_each(|later| restore(document, later));
+        let Some(later) = self.later(document).cloned() else { return };
+        self.done.extend(self.undone.pop());
+        restore(document, later);
     }
 
     /// Notes a change by hand, which is previewed first.
@@ -81,7 +86,7 @@ impl Changes {
 
     /// Ends the move. The changes of a command are not part of it.
     pub fn end_move(&mut self) {
-        self.history.add_undo(&self.last);
+        end_step(&mut self.done, &self.last);
         (self.moved, self.has_moved, self.is_in_gesture) = (None, false, false);
     }
 
@@ -99,11 +104,21 @@ impl Changes {
         }
         self.last = document.clone();
         self.is_in_gesture = std::mem::take(&mut self.has_moved) || self.is_moving() || is_by_hand;
-        self.history.feed_state(0.0, document);
+        if self.done.back() != Some(document) {
+            self.undone.clear();
+        }
         if !self.is_in_gesture {
-            self.history.add_undo(document);
+            end_step(&mut self.done, document);
         }
         is_other_film
+    }
+}
+
+/// Ends a step at `document`, if it has changed since the last one.
+fn end_step(done: &mut VecDeque<Document>, document: &Document) {
+    if done.back() != Some(document) {
+        done.push_back(document.clone());
+        done.drain(..done.len().saturating_sub(STEPS));
     }
 }
 

@@ -1,7 +1,6 @@
 //! The bar at the top: menus, stage, device, pause and save. In a narrow window it has two rows.
 
-use crate::app::commands::facts::Facts;
-use crate::app::commands::table::Command;
+use crate::app::commands::{Command, PanelContext};
 use crate::app::model::{Device, Document};
 use crate::app::toolkit::menu::menus;
 use crate::app::toolkit::theme;
@@ -27,7 +26,7 @@ const PAUSE: f32 = 72.0;
 const SAVE: f32 = 64.0;
 
 /// Draws the bar.
-pub fn ui(ui: &mut Ui, facts: &Facts) {
+pub fn ui(ui: &mut Ui, cx: &PanelContext) {
     let has_one_row = ui.available_width() >= ONE_ROW;
     let height = if has_one_row { HEIGHT } else { 2.0 * HEIGHT - 14.0 };
     let panel = egui::Panel::top("bar").exact_size(height).frame(theme::panel(Margin::symmetric(8, 11)));
@@ -38,23 +37,23 @@ pub fn ui(ui: &mut Ui, facts: &Facts) {
                 egui::containers::menu::menu_style(ui.style_mut());
                 ui.spacing_mut().item_spacing.x = 0.0;
                 ui.spacing_mut().button_padding = vec2(8.0, 4.0);
-                menus(ui, facts);
+                menus(ui, cx);
             });
             if has_one_row {
-                actions(ui, facts);
+                actions(ui, cx);
             }
         });
         if !has_one_row {
             ui.horizontal(|ui| {
                 ui.set_min_height(ROW);
-                actions(ui, facts);
+                actions(ui, cx);
             });
         }
     });
 }
 
 /// The stage in the middle of the window; device, pause and save at the right.
-fn actions(ui: &mut Ui, facts: &Facts) {
+fn actions(ui: &mut Ui, cx: &PanelContext) {
     let gap = ui.spacing().item_spacing.x;
     let at_right = 3.0 * DEVICE + PAUSE + SAVE + 4.0 * gap;
     let window = ui.ctx().content_rect();
@@ -64,12 +63,12 @@ fn actions(ui: &mut Ui, facts: &Facts) {
     let indent = window.center().x - 0.5 * width - ui.cursor().left();
     ui.add_space(indent.min(room - width).max(gap));
     let layout = Layout::left_to_right(Align::Center);
-    ui.allocate_ui_with_layout(vec2(width, 24.0), layout, |ui| stage(ui, facts));
+    ui.allocate_ui_with_layout(vec2(width, 24.0), layout, |ui| stage(ui, cx));
     ui.add_space((ui.available_width() - at_right).max(0.0));
-    device(ui, facts);
+    device(ui, cx);
     ui.add_space(gap);
-    pause(ui, facts);
-    add_command(ui, facts, Command::Save, Button::new("Save…").min_size(vec2(SAVE, 0.0)));
+    pause(ui, cx);
+    add_command(ui, cx, Command::Save, Button::new("Save…").min_size(vec2(SAVE, 0.0)));
 }
 
 /// Names the window after its picture.
@@ -84,11 +83,11 @@ pub fn name_window(context: &egui::Context, document: &Document) {
 }
 
 /// The stage between the arrows to its neighbours.
-fn stage(ui: &mut Ui, facts: &Facts) {
+fn stage(ui: &mut Ui, cx: &PanelContext) {
     ui.spacing_mut().item_spacing.x = 4.0;
     let width = ui.available_width() - 56.0;
-    step(ui, facts, Command::PreviousStage, "‹");
-    let document = facts.document();
+    step(ui, cx, Command::PreviousStage, "‹");
+    let document = cx.document();
     let title = match document.stage() {
         Some(stage) if width < 140.0 => stage.section.to_owned(),
         _ => document.heading(),
@@ -100,32 +99,32 @@ fn stage(ui: &mut Ui, facts: &Facts) {
     let button = Button::new(atoms).gap(0.0).min_size(vec2(width, 24.0)).truncate();
     let sized = ui.scope(|ui| {
         ui.set_max_width(width);
-        add_command(ui, facts, Command::Stages, button)
+        add_command(ui, cx, Command::Stages, button)
     });
     let response = sized.inner;
     let corner = response.rect.right_center() - vec2(14.0, 0.0);
     let icon = Rect::from_center_size(corner, vec2(9.0, 9.0));
     egui::collapsing_header::paint_default_icon(ui, 1.0, &response.clone().with_new_rect(icon));
     named(&response, "Choose a stage");
-    step(ui, facts, Command::NextStage, "›");
+    step(ui, cx, Command::NextStage, "›");
 }
 
-fn step(ui: &mut Ui, facts: &Facts, command: Command, sign: &str) {
+fn step(ui: &mut Ui, cx: &PanelContext, command: Command, sign: &str) {
     let atoms = (Atom::grow(), RichText::new(sign).strong(), Atom::grow());
     let button = Button::new(atoms).gap(0.0).min_size(vec2(24.0, 24.0));
-    named(&add_command(ui, facts, command, button), &command.name());
+    named(&add_command(ui, cx, command, button), &command.name());
 }
 
-fn device(ui: &mut Ui, facts: &Facts) {
+fn device(ui: &mut Ui, cx: &PanelContext) {
     let devices = [Device::Cpu, Device::Gpu, Device::Both];
-    command_switch(ui, facts, DEVICE, &devices.map(|device| (device.label(), Command::Device(device))));
+    command_switch(ui, cx, DEVICE, &devices.map(|device| (device.label(), Command::Device(device))));
 }
 
-fn pause(ui: &mut Ui, facts: &Facts) {
-    let label = match facts.model.is_paused {
-        _ if facts.further().is_some() => "Go on",
+fn pause(ui: &mut Ui, cx: &PanelContext) {
+    let label = match cx.model.is_paused {
+        _ if cx.further().is_some() => "Go on",
         true => "Resume",
         false => "Pause",
     };
-    add_command(ui, facts, Command::Pause, Button::new(label).min_size(vec2(PAUSE, 0.0)));
+    add_command(ui, cx, Command::Pause, Button::new(label).min_size(vec2(PAUSE, 0.0)));
 }

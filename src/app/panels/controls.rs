@@ -1,7 +1,6 @@
 //! The left panel: camera, lens, sphere, size and samples, tracer.
 
-use crate::app::commands::facts::Facts;
-use crate::app::commands::table::Command;
+use crate::app::commands::{Command, PanelContext};
 use crate::app::model::spheres::Selected;
 use crate::app::model::{Body, Device, Document, Edit, Remembered, Sizing, core_count, lane_counts};
 use crate::app::toolkit::widgets::{
@@ -27,16 +26,16 @@ const POSITIONS: RangeInclusive<f64> = -LENGTH_LIMIT..=LENGTH_LIMIT;
 const LENS_CHAPTER: u32 = 12;
 
 /// Draws the panel.
-pub fn ui(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, facts: &Facts) {
+pub fn ui(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx: &PanelContext) {
     let has_rays = document.no_rays().is_none();
     if has_rays {
         camera(ui, document);
         lens(ui, document);
-        sphere(ui, document, facts);
+        sphere(ui, document, cx);
         panel_line(ui);
     }
     ui.spacing_mut().item_spacing.y = 0.0;
-    size_and_samples(ui, document, remembered, facts);
+    size_and_samples(ui, document, remembered, cx);
     if has_rays {
         tracer(ui, document, remembered);
     }
@@ -116,8 +115,8 @@ fn lens_controls(ui: &mut Ui, camera: &mut Camera, original: f64) {
     }
 }
 
-fn sphere(ui: &mut Ui, document: &mut Document, facts: &Facts) {
-    let selected = Selected::of(&facts.model);
+fn sphere(ui: &mut Ui, document: &mut Document, cx: &PanelContext) {
+    let selected = Selected::of(&cx.model);
     let title =
         selected.as_ref().map_or("Sphere".to_owned(), |selected| format!("Sphere: {}", selected.material));
     let reset = document.has_changed_scene().then_some("Reset spheres");
@@ -128,7 +127,7 @@ fn sphere(ui: &mut Ui, document: &mut Document, facts: &Facts) {
         };
         let body = body(ui, &selected, document);
         if body != selected.body {
-            facts.edit(Edit::Change(selected.sphere, body));
+            cx.edit(Edit::Change(selected.sphere, body));
         }
         ui.horizontal(|ui| {
             for (name, command) in [
@@ -136,7 +135,7 @@ fn sphere(ui: &mut Ui, document: &mut Document, facts: &Facts) {
                 ("Copy", Command::DuplicateSphere),
                 ("Delete", Command::DeleteSphere),
             ] {
-                command_button(ui, facts, command, name);
+                command_button(ui, cx, command, name);
             }
         });
     });
@@ -199,7 +198,7 @@ fn kind(ui: &mut Ui, material: Material, disabled_reason: Option<&str>) -> Mater
     switch(ui, width, material, &options).unwrap_or(material)
 }
 
-fn size_and_samples(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, facts: &Facts) {
+fn size_and_samples(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx: &PanelContext) {
     let (origin, size) = (Arc::clone(&document.origin), document.size());
     let is_own = document.has_own_size;
     let is_resized = is_own != origin.keeps_size() || (is_own && size != origin.size());
@@ -208,7 +207,7 @@ fn size_and_samples(ui: &mut Ui, document: &mut Document, remembered: &mut Remem
     let reset = is_changed.then_some("Reset size and samples");
     let header = Header { title: "Size and samples", summary: &summary, reset, ..Header::default() };
     let is_reset = fold(ui, header, document.no_rays().is_some(), |ui| {
-        sizing(ui, document, remembered, facts);
+        sizing(ui, document, remembered, cx);
         let usual = origin.recipe.samples_per_pixel;
         stop(ui, &mut document.stop, document.settings.estimate_error, usual);
     });
@@ -220,7 +219,7 @@ fn size_and_samples(ui: &mut Ui, document: &mut Document, remembered: &mut Remem
     }
 }
 
-fn sizing(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, facts: &Facts) {
+fn sizing(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx: &PanelContext) {
     let names = [
         ("Fill the window", Some(Sizing::Viewport)),
         ("As in the book", Some(Sizing::Book)),
@@ -235,7 +234,7 @@ fn sizing(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, fac
                 match sizing {
                     Some(sizing) => {
                         remembered.sizing = sizing;
-                        facts.send(Command::RenderAtSize);
+                        cx.send(Command::RenderAtSize);
                     }
                     None => document.has_own_size = true,
                 }

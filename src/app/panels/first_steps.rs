@@ -1,7 +1,6 @@
 //! The card under the picture: what the window is, and three things to try.
 
-use crate::app::commands::facts::Facts;
-use crate::app::commands::table::Command;
+use crate::app::commands::{Command, PanelContext};
 use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{command_button, primary, sign_button, tip};
 use crate::stages::Stage;
@@ -17,8 +16,8 @@ const STEPS: [&str; 3] = [
 ];
 
 /// Draws the card, if it is shown, at the bottom of `ui`.
-pub fn ui(ui: &mut Ui, facts: &Facts) {
-    if !facts.model.has_first_steps {
+pub fn ui(ui: &mut Ui, cx: &PanelContext) {
+    if !cx.model.has_first_steps {
         return;
     }
     let is_wide = ui.available_width() >= WIDE;
@@ -39,12 +38,12 @@ pub fn ui(ui: &mut Ui, facts: &Facts) {
     panel.frame(around).show(ui, |ui| {
         card.show(ui, |ui| {
             ui.set_min_size(ui.available_size());
-            content(ui, is_wide, facts);
+            content(ui, is_wide, cx);
         });
     });
 }
 
-fn content(ui: &mut Ui, is_wide: bool, facts: &Facts) {
+fn content(ui: &mut Ui, is_wide: bool, cx: &PanelContext) {
     Sides::new().height(20.0).shrink_left().truncate().show(
         ui,
         |ui| {
@@ -56,7 +55,7 @@ fn content(ui: &mut Ui, is_wide: bool, facts: &Facts) {
         |ui| {
             let close = sign_button(ui, "×", 20.0, "Close first steps");
             if tip(ui, close, "Help > First steps brings this back", None).clicked() {
-                facts.send(Command::FirstSteps);
+                cx.send(Command::FirstSteps);
             }
         },
     );
@@ -67,10 +66,10 @@ fn content(ui: &mut Ui, is_wide: bool, facts: &Facts) {
         if let Some(first) = Stage::ALL.first() {
             let response = ui.add(primary(format!("Start the book at {}", first.section)));
             if tip(ui, response, first.what_is_new, None).clicked() {
-                facts.send(Command::Stage(first));
+                cx.send(Command::Stage(first));
             }
         }
-        command_button(ui, facts, Command::CheckPicture, "Check my picture…");
+        command_button(ui, cx, Command::CheckPicture, "Check my picture…");
     });
 }
 

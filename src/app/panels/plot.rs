@@ -1,7 +1,7 @@
 //! The plot of error against tracing seconds, on logarithmic axes: a curve for each backend since the last restart, the
 //! expected continuation, and the goal; and when a render will reach its goal.
 
-use crate::app::commands::facts::Facts;
+use crate::app::commands::Snapshot;
 use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{compact, hint, tip};
 use crate::numbers::statistics::fit::{Point, Prediction, predict};
@@ -15,12 +15,12 @@ use egui_plot::{
 const FARTHEST: f64 = 1e6;
 
 /// Draws the plot.
-pub fn ui(ui: &mut Ui, facts: &Facts) {
-    let status = &facts.status;
+pub fn ui(ui: &mut Ui, snapshot: &Snapshot) {
+    let status = &snapshot.status;
     if points(status).is_empty() {
         hint(
             ui,
-            match facts.document().settings.estimate_error {
+            match snapshot.document().settings.estimate_error {
                 true => "The error is known after four samples per pixel.",
                 false => "Switch on \u{201c}Estimate the error\u{201d} under Tracer.",
             },
@@ -37,7 +37,7 @@ pub fn ui(ui: &mut Ui, facts: &Facts) {
             }
         },
     );
-    plot(ui, facts.document().stop.noise, status);
+    plot(ui, snapshot.document().stop.noise, status);
 }
 
 fn plot(ui: &mut Ui, goal: Option<f64>, status: &Status) {

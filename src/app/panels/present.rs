@@ -3,8 +3,7 @@
 //! All sizes are shares of the window's height, so that a projector's resolution does not matter.
 
 use super::status;
-use crate::app::commands::facts::Facts;
-use crate::app::commands::table::Command;
+use crate::app::commands::{Command, PanelContext, Snapshot};
 use crate::app::toolkit::theme;
 use crate::progressive::Phase;
 use crate::stages::Stage;
@@ -26,11 +25,11 @@ fn unit(context: &Context) -> f32 {
 }
 
 /// Draws everything except the picture, which gets the room that is left.
-pub fn ui(ui: &mut Ui, facts: &Facts) {
+pub fn ui(ui: &mut Ui, cx: &PanelContext) {
     let unit = unit(ui.ctx());
-    let words = status::sentence(facts);
-    let is_done = matches!(facts.status.phase, Phase::Done(_));
-    let share = if is_done { 1.0 } else { status::share(facts).unwrap_or(0.0) as f32 };
+    let words = status::sentence(cx);
+    let is_done = matches!(cx.status.phase, Phase::Done(_));
+    let share = if is_done { 1.0 } else { status::share(cx).unwrap_or(0.0) as f32 };
     bottom("present progress", 0.5 * unit, 0.0).show(ui, |ui| {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &words));
@@ -38,7 +37,7 @@ pub fn ui(ui: &mut Ui, facts: &Facts) {
         ui.painter().rect_filled(rect, 0.0, theme::colours(ui).raised);
         ui.painter().rect_filled(done, 0.0, theme::colours(ui).accent);
     });
-    if !facts.model.presentation.is_some_and(|presentation| presentation.has_captions) {
+    if !cx.model.presentation.is_some_and(|presentation| presentation.has_captions) {
         return;
     }
     let margin = MARGIN * unit;
@@ -49,11 +48,11 @@ pub fn ui(ui: &mut Ui, facts: &Facts) {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(words));
         });
     });
-    if let Some(texts) = texts(facts) {
+    if let Some(texts) = texts(cx) {
         bottom("present texts", 16.0 * unit, margin).show(ui, |ui| columns(ui, unit, texts));
     }
     let title_bar = Panel::top("present title").exact_size(9.0 * unit).show_separator_line(false);
-    title_bar.frame(frame(margin)).show(ui, |ui| ui.horizontal_centered(|ui| title(ui, unit, facts)));
+    title_bar.frame(frame(margin)).show(ui, |ui| ui.horizontal_centered(|ui| title(ui, unit, cx)));
 }
 
 /// The keys of a presentation.
@@ -111,18 +110,18 @@ pub fn blank(context: &Context) {
     context.set_cursor_icon(CursorIcon::None);
 }
 
-fn title(ui: &mut Ui, unit: f32, facts: &Facts) {
-    let (colours, stage) = (theme::colours(ui), facts.document().stage());
+fn title(ui: &mut Ui, unit: f32, snapshot: &Snapshot) {
+    let (colours, stage) = (theme::colours(ui), snapshot.document().stage());
     let place = |stage: &Stage| {
         let place = Stage::walk().take_while(|other| other.index() <= stage.index()).count();
         format!("{place} of {}", Stage::walk().count())
     };
     let left = |ui: &mut Ui| {
-        let mut title = facts.document().title();
+        let mut title = snapshot.document().title();
         if let Some(stage) = stage {
             ui.label(RichText::new(stage.section).size(4.5 * unit).color(colours.accent));
             ui.add_space(unit);
-            let changed = if facts.document().has_changed_scene() { ", changed" } else { "" };
+            let changed = if snapshot.document().has_changed_scene() { ", changed" } else { "" };
             title = format!("{}{changed}", stage.title);
         }
         ui.add(Label::new(RichText::new(title).size(4.5 * unit).color(colours.strong)).truncate());
@@ -135,10 +134,10 @@ fn title(ui: &mut Ui, unit: f32, facts: &Facts) {
 }
 
 /// The headings and texts below the picture.
-fn texts(facts: &Facts) -> Option<[(&'static str, &'static str); 2]> {
-    let (stage, case) = (facts.document().stage(), facts.document().case());
+fn texts(snapshot: &Snapshot) -> Option<[(&'static str, &'static str); 2]> {
+    let (stage, case) = (snapshot.document().stage(), snapshot.document().case());
     if let Some(stage) = stage {
-        let look_for = if facts.has_sight { stage.sight.caption } else { stage.look_for };
+        let look_for = if snapshot.has_sight { stage.sight.caption } else { stage.look_for };
         return Some([("What is new", stage.what_is_new), ("Look for", look_for)]);
     }
     let watch = case?.watch?;

@@ -1,8 +1,7 @@
 //! The bar at the bottom: one sentence about the render, a line for its progress, and details on request.
 
 use super::plot::prediction;
-use crate::app::commands::facts::Facts;
-use crate::app::commands::table::Command;
+use crate::app::commands::{Command, PanelContext, Snapshot};
 use crate::app::model::spheres;
 use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{command_button, compact, small, tip};
@@ -29,43 +28,43 @@ const TERMS: &str = "A path is one random way of light, followed back from the c
                      finished picture, in per cent of white.";
 
 /// Draws the bar. `offered` is the size at which a scaled picture can be rendered.
-pub fn ui(ui: &mut Ui, facts: &Facts, offered: Option<[u32; 2]>) {
+pub fn ui(ui: &mut Ui, cx: &PanelContext, offered: Option<[u32; 2]>) {
     let panel =
         egui::Panel::bottom("status").exact_size(HEIGHT).frame(theme::panel(Margin::symmetric(16, 4)));
     let shown = panel.show(ui, |ui| {
         let sides = Sides::new().height(ui.available_height()).shrink_left().truncate();
-        sides.show(ui, |ui| sentence_ui(ui, facts, offered), |ui| details(ui, facts));
+        sides.show(ui, |ui| sentence_ui(ui, cx, offered), |ui| details(ui, cx));
     });
-    if let Some(share) = share(facts) {
+    if let Some(share) = share(cx) {
         let rect = shown.response.rect;
         let colours = theme::colours(ui);
-        let color = if facts.model.is_paused { colours.weak } else { colours.accent };
+        let color = if cx.model.is_paused { colours.weak } else { colours.accent };
         let end = rect.left() + rect.width() * share as f32;
         ui.painter().hline(rect.left()..=end, rect.top() + 1.0, Stroke::new(2.0, color));
     }
 }
 
 /// The sentence, and what the user can do about the picture.
-fn sentence_ui(ui: &mut Ui, facts: &Facts, offered: Option<[u32; 2]>) {
-    let sentence = sentence(facts);
-    let is_fault = facts.invalid.is_some() || matches!(facts.status.phase, Phase::Failed(_));
+fn sentence_ui(ui: &mut Ui, cx: &PanelContext, offered: Option<[u32; 2]>) {
+    let sentence = sentence(cx);
+    let is_fault = cx.invalid.is_some() || matches!(cx.status.phase, Phase::Failed(_));
     let color = if is_fault { theme::colours(ui).bad } else { ui.visuals().text_color() };
     let response = ui.label(RichText::new(&sentence).color(color));
     announce(&response, &sentence);
-    let doubt = facts.status.doubt.as_ref().map_or_else(String::new, |doubt| format!(". {doubt}"));
+    let doubt = cx.status.doubt.as_ref().map_or_else(String::new, |doubt| format!(". {doubt}"));
     tip(ui, response, &format!("{ERROR_HELP}{doubt}"), None);
-    left_out(ui, facts.status.rejected_samples);
-    let is_inside = spheres::inside(facts.document()) && facts.document().case().is_none();
-    if is_inside || facts.is_lost {
+    left_out(ui, cx.status.rejected_samples);
+    let is_inside = spheres::inside(cx.document()) && cx.document().case().is_none();
+    if is_inside || cx.is_lost {
         ui.label(match is_inside {
             true => "The camera is inside a sphere.",
             false => "Nothing but sky or ground is in sight.",
         });
-        command_button(ui, facts, Command::Home, "Home");
+        command_button(ui, cx, Command::Home, "Home");
     } else if let Some([width, height]) = offered {
         ui.label("This picture is scaled.");
         let name = format!("Render at {width} × {height}");
-        command_button(ui, facts, Command::RenderAtSize, &name);
+        command_button(ui, cx, Command::RenderAtSize, &name);
     }
 }
 
@@ -95,21 +94,21 @@ fn left_out(ui: &mut Ui, count: u64) {
 }
 
 /// What the tracer is doing.
-pub fn sentence(facts: &Facts) -> String {
-    let (status, stop) = (&*facts.status, facts.document().stop);
-    if let Some(reason) = &facts.invalid {
+pub fn sentence(snapshot: &Snapshot) -> String {
+    let (status, stop) = (&*snapshot.status, snapshot.document().stop);
+    if let Some(reason) = &snapshot.invalid {
         return format!("Not rendered: {reason}");
     }
-    let view = &facts.model.view;
+    let view = &snapshot.model.view;
     if let Some(kept) = view.looked().and_then(|place| view.kept.get(place)) {
         let (title, samples) = (view.kept.title(kept), grouped(kept.samples()));
         return format!("Kept {title}, {samples} samples per pixel. Escape returns to the picture");
     }
-    if let Some(checked) = &facts.checked {
+    if let Some(checked) = &snapshot.checked {
         return checked.clone();
     }
     let count = status.samples_per_pixel;
-    let error = match (status.error, denoised_error(facts)) {
+    let error = match (status.error, denoised_error(snapshot)) {
         (Some(raw), Some(Ok(error))) => {
             let [rmse, deviation, raw] = [error.rmse(), error.rmse_deviation(), raw.rmse].map(percent);
             format!(", denoised: error {rmse} ± {deviation} (raw {raw})")
@@ -121,19 +120,20 @@ pub fn sentence(facts: &Facts) -> String {
     let samples = format!("{} samples per pixel", grouped(count));
     match &status.phase {
         Phase::Failed(reason) => format!("Stopped at {samples}: {reason}"),
-        _ if facts.is_coarse && facts.is_moving => "A coarse picture while you move".to_owned(),
-        _ if (facts.is_coarse || count == 0) && facts.has_picture => "Refining".to_owned(),
-        _ if facts.is_coarse || count == 0 => "Starting".to_owned(),
-        _ if facts.model.is_paused && facts.is_held => {
+        _ if snapshot.is_coarse && snapshot.is_moving => "A coarse picture while you move".to_owned(),
+        _ if (snapshot.is_coarse || count == 0) && snapshot.has_picture => "Refining".to_owned(),
+        _ if snapshot.is_coarse || count == 0 => "Starting".to_owned(),
+        _ if snapshot.model.is_paused && snapshot.is_held => {
             format!("Paused; the picture has moved, and {count} samples show it")
         }
-        _ if facts.model.is_paused => format!("Paused at {samples}{error}"),
-        Phase::Done(_) if !facts.document().is_random() => {
+        _ if snapshot.model.is_paused => format!("Paused at {samples}{error}"),
+        Phase::Done(_) if !snapshot.document().is_random() => {
             "Done: nothing in this picture depends on chance".to_owned()
         }
         Phase::Done(reason) => {
-            let seconds = facts.seconds_before.unwrap_or_default() + status.trace.as_secs_f64();
-            let taken = facts.seconds_before.map_or_else(String::new, |_| format!(" in {}", time(seconds)));
+            let seconds = snapshot.seconds_before.unwrap_or_default() + status.trace.as_secs_f64();
+            let taken =
+                snapshot.seconds_before.map_or_else(String::new, |_| format!(" in {}", time(seconds)));
             let word = if *reason == EndReason::Stopped { "Stopped" } else { "Done" };
             format!("{word}: {samples}{taken}{error}")
         }
@@ -144,22 +144,22 @@ pub fn sentence(facts: &Facts) -> String {
                 let samples = format!("{} of {} samples per pixel", grouped(count), grouped(end));
                 format!("{samples}{error}; done in about {left}")
             }
-            None => format!("{samples}{error}{}", ending(facts)),
+            None => format!("{samples}{error}{}", ending(snapshot)),
         },
     }
 }
 
 /// The error of the denoised picture of the traced film, or why there is none, if it is to be shown.
-fn denoised_error(facts: &Facts) -> Option<Result<DenoisedError, &str>> {
-    let view = &facts.model.view;
+fn denoised_error(snapshot: &Snapshot) -> Option<Result<DenoisedError, &str>> {
+    let view = &snapshot.model.view;
     let (run, found) = view.denoised.as_ref().filter(|_| view.is_denoised)?;
     let outcome = found.as_ref().map(|denoised| denoised.error).map_err(String::as_str);
-    (*run == facts.status.run && outcome != Err("")).then_some(outcome)
+    (*run == snapshot.status.run && outcome != Err("")).then_some(outcome)
 }
 
 /// When a render without a number of samples will end.
-fn ending(facts: &Facts) -> String {
-    let (status, stop) = (&*facts.status, facts.document().stop);
+fn ending(snapshot: &Snapshot) -> String {
+    let (status, stop) = (&*snapshot.status, snapshot.document().stop);
     if let Some((target, found)) = stop.noise.zip(prediction(status, stop.noise)) {
         format!("; {} in about {}", percent(target), time(found.time))
     } else if let Some(end) = stop.seconds {
@@ -170,9 +170,9 @@ fn ending(facts: &Facts) -> String {
 }
 
 /// How much of the work is done, `0..=1`; none without an end.
-pub fn share(facts: &Facts) -> Option<f64> {
-    let (status, stop) = (&*facts.status, facts.document().stop);
-    if status.phase.is_over() || status.samples_per_pixel == 0 || facts.is_coarse {
+pub fn share(snapshot: &Snapshot) -> Option<f64> {
+    let (status, stop) = (&*snapshot.status, snapshot.document().stop);
+    if status.phase.is_over() || status.samples_per_pixel == 0 || snapshot.is_coarse {
         return None;
     }
     let of_samples = stop.samples.map(|end| status.samples_per_pixel as f64 / end.max(1) as f64);
@@ -182,7 +182,7 @@ pub fn share(facts: &Facts) -> Option<f64> {
     [of_samples, of_time, of_error].into_iter().flatten().reduce(f64::max).map(|share| share.clamp(0.0, 1.0))
 }
 
-fn details(ui: &mut Ui, facts: &Facts) {
+fn details(ui: &mut Ui, snapshot: &Snapshot) {
     let response = ui.add(Button::new("Details"));
     egui::Popup::from_toggle_button_response(&response)
         .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
@@ -192,7 +192,7 @@ fn details(ui: &mut Ui, facts: &Facts) {
             ui.set_width(304.0);
             egui::Frame::new().inner_margin(12).show(ui, |ui| {
                 ui.label(RichText::new("Details").strong());
-                for (name, value) in figures(facts) {
+                for (name, value) in figures(snapshot) {
                     ui.horizontal(|ui| {
                         small(ui, name);
                         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -206,8 +206,8 @@ fn details(ui: &mut Ui, facts: &Facts) {
     tip(ui, response, "Speed, lanes, memory, and what these mean", None);
 }
 
-fn figures(facts: &Facts) -> Vec<(&'static str, String)> {
-    let status = &*facts.status;
+fn figures(snapshot: &Snapshot) -> Vec<(&'static str, String)> {
+    let status = &*snapshot.status;
     let unknown = || "–".to_owned();
     let speed = status.paths_per_second() / 1e6;
     // A film that was opened does not say how its samples were traced.
@@ -216,7 +216,7 @@ fn figures(facts: &Facts) -> Vec<(&'static str, String)> {
     let on_cpu = status.contributions.iter().rev().find(|part| part.backend.name.starts_with("cpu"));
     let lanes = status.lane_occupancy().zip(on_cpu);
     let lanes = lanes.map(|(share, part)| format!("{}, {:.0} % at work", part.backend.lanes, 100.0 * share));
-    let settings = facts.document().settings;
+    let settings = snapshot.document().settings;
     let bytes = Film::bytes(settings.width, settings.height, settings.half_count());
     vec![
         ("Speed", if has_paths { format!("{speed:.1} million paths per second") } else { unknown() }),
@@ -270,14 +270,14 @@ pub fn time(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::facts_of;
+    use crate::app::tests::snapshot_of;
     use crate::film::ErrorEstimate;
     use std::sync::Arc;
     use std::time::Duration;
 
     #[test]
     fn the_sentence_tells_how_far_the_render_is() {
-        let mut facts = facts_of("--stage metal --size 32x18");
+        let mut snapshot = snapshot_of("--stage metal --size 32x18");
         let status = Status {
             samples_per_pixel: 100,
             phase: Phase::Tracing,
@@ -285,21 +285,25 @@ mod tests {
             error: Some(ErrorEstimate { rmse: 0.004, rmse_deviation: 0.0, rel_mse: 0.0 }),
             ..Status::default()
         };
-        facts.status = Arc::new(status.clone());
-        facts.model.document.stop.noise = Some(0.002);
-        assert!(sentence(&facts).ends_with("error 0.4 %; 0.2 % in about 30 s"), "{}", sentence(&facts));
-        assert_eq!(share(&facts), Some(0.25));
-        facts.is_coarse = true;
-        assert!(sentence(&facts) == "Starting" && share(&facts).is_none());
-        facts.is_moving = true;
-        assert_eq!(sentence(&facts), "A coarse picture while you move");
-        facts.is_coarse = false;
-        (facts.model.is_paused, facts.is_held) = (true, true);
-        assert_eq!(sentence(&facts), "Paused; the picture has moved, and 100 samples show it");
-        (facts.model.is_paused, facts.is_held) = (false, false);
-        facts.status = Arc::new(Status { phase: Phase::Done(EndReason::NoiseTarget), ..status });
-        assert!(sentence(&facts).starts_with("Done: 100 samples per pixel in 10 s"), "{}", sentence(&facts));
-        assert_eq!(share(&facts), None);
+        snapshot.status = Arc::new(status.clone());
+        snapshot.model.document.stop.noise = Some(0.002);
+        assert!(sentence(&snapshot).ends_with("error 0.4 %; 0.2 % in about 30 s"), "{}", sentence(&snapshot));
+        assert_eq!(share(&snapshot), Some(0.25));
+        snapshot.is_coarse = true;
+        assert!(sentence(&snapshot) == "Starting" && share(&snapshot).is_none());
+        snapshot.is_moving = true;
+        assert_eq!(sentence(&snapshot), "A coarse picture while you move");
+        snapshot.is_coarse = false;
+        (snapshot.model.is_paused, snapshot.is_held) = (true, true);
+        assert_eq!(sentence(&snapshot), "Paused; the picture has moved, and 100 samples show it");
+        (snapshot.model.is_paused, snapshot.is_held) = (false, false);
+        snapshot.status = Arc::new(Status { phase: Phase::Done(EndReason::NoiseTarget), ..status });
+        assert!(
+            sentence(&snapshot).starts_with("Done: 100 samples per pixel in 10 s"),
+            "{}",
+            sentence(&snapshot)
+        );
+        assert_eq!(share(&snapshot), None);
         assert_eq!([4.2, 72.0, 7500.0, 1e6].map(time), ["4 s", "1 min 12 s", "2 h 5 min", "more than a day"]);
     }
 }

@@ -1,8 +1,7 @@
 //! The menus, read from the table of commands.
 
 use super::widgets::tip;
-use crate::app::commands::facts::Facts;
-use crate::app::commands::table::{Command, MENUS, ROWS};
+use crate::app::commands::{Command, MENUS, PanelContext, ROWS};
 use eframe::egui::accesskit::Toggled;
 use eframe::egui::containers::menu::SubMenuButton;
 use eframe::egui::{Atom, Button, IdSalt, Response, RichText, Stroke, Ui, vec2};
@@ -11,48 +10,48 @@ use eframe::egui::{Atom, Button, IdSalt, Response, RichText, Stroke, Ui, vec2};
 pub const MENU_WIDTH: f32 = 248.0;
 
 /// All menus of the bar.
-pub fn menus(ui: &mut Ui, facts: &Facts) {
+pub fn menus(ui: &mut Ui, cx: &PanelContext) {
     for menu in MENUS {
-        ui.menu_button(menu, |ui| entries(ui, menu, facts));
+        ui.menu_button(menu, |ui| entries(ui, menu, cx));
     }
 }
 
 /// The entries of a menu, with its submenus where they belong.
-fn entries(ui: &mut Ui, menu: &str, facts: &Facts) {
+fn entries(ui: &mut Ui, menu: &str, cx: &PanelContext) {
     ui.set_width(MENU_WIDTH);
     if menu == "View" {
-        submenu(ui, "Show", |ui| entries(ui, "Show", facts));
+        submenu(ui, "Show", |ui| entries(ui, "Show", cx));
     }
     for row in ROWS.iter().filter(|row| row.menu == Some(menu)) {
         if row.has_line {
             ui.separator();
         }
-        item(ui, facts, row.command);
+        item(ui, cx, row.command);
         match row.command {
             Command::Open => {
-                ui.add_enabled_ui(facts.recent().next().is_some(), |ui| {
-                    submenu(ui, "Open recent", |ui| places(ui, facts, facts.recent()));
+                ui.add_enabled_ui(cx.recent().next().is_some(), |ui| {
+                    submenu(ui, "Open recent", |ui| places(ui, cx, cx.recent()));
                 });
             }
             Command::ActualSize => {
                 submenu(ui, "Bookmarks", |ui| {
-                    entries(ui, "Bookmarks", facts);
-                    places(ui, facts, facts.bookmarks());
+                    entries(ui, "Bookmarks", cx);
+                    places(ui, cx, cx.bookmarks());
                 });
             }
             Command::FullScreen => {
                 ui.separator();
-                submenu(ui, "Theme", |ui| entries(ui, "Theme", facts));
+                submenu(ui, "Theme", |ui| entries(ui, "Theme", cx));
             }
             _ => {}
         }
     }
 }
 
-fn places(ui: &mut Ui, facts: &Facts, all: impl Iterator<Item = Command>) {
+fn places(ui: &mut Ui, cx: &PanelContext, all: impl Iterator<Item = Command>) {
     ui.set_width(MENU_WIDTH);
     for command in all {
-        item(ui, facts, command);
+        item(ui, cx, command);
     }
 }
 
@@ -69,8 +68,8 @@ fn submenu(ui: &mut Ui, name: &str, content: impl FnOnce(&mut Ui)) {
 }
 
 /// A menu entry for a command.
-pub fn item(ui: &mut Ui, facts: &Facts, command: Command) -> Response {
-    let (reason, name) = (facts.disabled_reason(command), facts.name(command));
+pub fn item(ui: &mut Ui, cx: &PanelContext, command: Command) -> Response {
+    let (reason, name) = (cx.disabled_reason(command), cx.name(command));
     let response = ui
         .scope(|ui| {
             ui.spacing_mut().button_padding = vec2(4.0, 4.0);
@@ -78,16 +77,16 @@ pub fn item(ui: &mut Ui, facts: &Facts, command: Command) -> Response {
         })
         .inner
         .accessible_name(name.as_str());
-    if facts.is_on(command) {
+    if cx.is_on(command) {
         let middle = response.rect.left_center() + vec2(12.0, 0.0);
         let tick = [[-4.0, 0.0], [-1.0, 3.0], [4.5, -4.0]].map(|[x, y]| middle + vec2(x, y));
         ui.painter().line(tick.to_vec(), Stroke::new(1.5, ui.visuals().strong_text_color()));
     }
-    name_state(&response, facts.switch(command));
-    let path = facts.path(command).map(|path| path.display().to_string());
+    name_state(&response, cx.switch(command));
+    let path = cx.path(command).map(|path| path.display().to_string());
     let response = tip(ui, response, path.as_deref().unwrap_or(command.help()), reason.as_deref());
     if response.clicked() {
-        facts.send(command);
+        cx.send(command);
         ui.close();
     }
     response

@@ -2,7 +2,7 @@
 
 use super::theme;
 use super::widgets::sign_button;
-use crate::app::commands::table::Command;
+use crate::app::commands::Command;
 use crate::app::model::Document;
 use crate::system::console;
 use eframe::egui::{self, Align2, Id, Label, Rect, RichText, accesskit::Live, vec2};

@@ -1,8 +1,7 @@
 //! Controls of the window: numbers, switches, lists, headers, signs and tooltips.
 
 use super::theme;
-use crate::app::commands::facts::Facts;
-use crate::app::commands::table::Command;
+use crate::app::commands::{Command, PanelContext};
 use eframe::egui::collapsing_header::{CollapsingState, paint_default_icon};
 use eframe::egui::{
     self, Align, Atom, Button, Color32, ComboBox, CornerRadius, DragValue, Id, IntoAtoms, Key, Label, Layout,
@@ -166,33 +165,33 @@ pub fn primary(text: impl Into<WidgetText>) -> impl Widget {
 }
 
 /// A button for a command, under this name.
-pub fn command_button(ui: &mut Ui, facts: &Facts, command: Command, name: &str) {
-    add_command(ui, facts, command, Button::new(name));
+pub fn command_button(ui: &mut Ui, cx: &PanelContext, command: Command, name: &str) {
+    add_command(ui, cx, command, Button::new(name));
 }
 
 /// A control for a command, with its help and keys as tooltip.
-pub fn add_command(ui: &mut Ui, facts: &Facts, command: Command, control: impl Widget) -> Response {
-    let reason = facts.disabled_reason(command);
+pub fn add_command(ui: &mut Ui, cx: &PanelContext, command: Command, control: impl Widget) -> Response {
+    let reason = cx.disabled_reason(command);
     let response = ui.add_enabled(reason.is_none(), control);
     let response = tip(ui, response, &with_keys(ui, command.help(), command), reason.as_deref());
     if response.clicked() {
-        facts.send(command);
+        cx.send(command);
     }
     response
 }
 
 /// Buttons of commands, of which at most one is on, each at least `width` wide.
-pub fn command_switch(ui: &mut Ui, facts: &Facts, width: f32, named: &[(&str, Command)]) {
+pub fn command_switch(ui: &mut Ui, cx: &PanelContext, width: f32, named: &[(&str, Command)]) {
     let words = |(_, command): &(&str, Command)| {
-        (with_keys(ui, command.help(), *command), facts.disabled_reason(*command))
+        (with_keys(ui, command.help(), *command), cx.disabled_reason(*command))
     };
     let words: Vec<_> = named.iter().map(words).collect();
     let options = named.iter().zip(&words).map(|((name, command), (help, reason))| {
         (Some(*command), About::new(name, help).disabled_if(reason.as_deref()))
     });
-    let on = named.iter().map(|(_, command)| *command).find(|command| facts.is_on(*command));
+    let on = named.iter().map(|(_, command)| *command).find(|command| cx.is_on(*command));
     if let Some(Some(command)) = switch(ui, width, on, &options.collect::<Vec<_>>()) {
-        facts.send(command);
+        cx.send(command);
     }
 }
 

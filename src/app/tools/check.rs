@@ -1,15 +1,11 @@
 //! A picture of another program: what is wrong with it, and where.
 
-use crate::app::commands::facts::Facts;
-use crate::app::commands::table::Command;
+use crate::app::commands::{Command, PanelContext};
 use crate::app::model::{Remembered, Tab};
 use crate::app::panels::right::scrolling;
 use crate::app::panels::stage_panel::paragraph;
-use crate::app::toolkit::answers::Answers;
-use crate::app::toolkit::texture::Texture;
-use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{About, Header, fold, hint, panel_line, primary, small, switch, tip};
-use crate::app::viewport::paint;
+use crate::app::toolkit::{Answers, Texture, overlay, theme};
 use crate::pictures::check::{Answer, AnswerKind, Damage, Mine, judge, pictures};
 use crate::stages::Stage;
 use eframe::egui::{
@@ -107,7 +103,7 @@ impl Check {
     }
 
     /// Draws the answer, or that it is awaited.
-    pub fn ui(&mut self, ui: &mut Ui, facts: &Facts) {
+    pub fn ui(&mut self, ui: &mut Ui, cx: &PanelContext) {
         let name = self.name();
         let Some((answer, pictures)) = &self.shown else {
             scrolling(ui, |ui| {
@@ -128,7 +124,7 @@ impl Check {
                 is_again = ui.button("Check again").clicked();
                 is_closed = ui.button("Close").clicked();
                 if ui.button("Another picture…").clicked() {
-                    facts.send(Command::CheckPicture);
+                    cx.send(Command::CheckPicture);
                 }
             });
         });
@@ -145,7 +141,7 @@ impl Check {
             for Damage { title, remedy } in &answer.damages {
                 paragraph(ui, "The file, too", &format!("{title}: {remedy}."));
             }
-            links(ui, answer, facts);
+            links(ui, answer, cx);
             if pictures.is_some() {
                 ui.add_space(4.0);
                 small(ui, "Compare");
@@ -190,7 +186,7 @@ impl Check {
             Side::Wipe | Side::Ours => ours,
             Side::Difference => difference,
         };
-        painter.image(whole.id(ui.ctx(), options), rect, paint::WHOLE, Color32::WHITE);
+        painter.image(whole.id(ui.ctx(), options), rect, overlay::WHOLE, Color32::WHITE);
         let your_title = format!("Yours: {}", self.name());
         let our_title = match answer.stage {
             Some(stage) => format!("Ours: {} {}", stage.section, stage.title),
@@ -202,10 +198,10 @@ impl Check {
                     self.divider = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
                 }
                 let left = (yours.id(ui.ctx(), options), rect);
-                paint::wipe(ui, &painter, rect, self.divider, left, [&your_title, &our_title]);
+                overlay::wipe(ui, &painter, rect, self.divider, left, [&your_title, &our_title]);
             }
-            Side::Yours => paint::title(ui, &painter, rect, Align2::LEFT_TOP, &your_title),
-            Side::Ours => paint::title(ui, &painter, rect, Align2::RIGHT_TOP, &our_title),
+            Side::Yours => overlay::title(ui, &painter, rect, Align2::LEFT_TOP, &your_title),
+            Side::Ours => overlay::title(ui, &painter, rect, Align2::RIGHT_TOP, &our_title),
             Side::Difference => {}
         }
         Some(room)
@@ -226,20 +222,20 @@ fn verdict(ui: &mut Ui, answer: &Answer) {
 }
 
 /// Buttons that lead to the section of the mistake, or on.
-fn links(ui: &mut Ui, answer: &Answer, facts: &Facts) {
+fn links(ui: &mut Ui, answer: &Answer, cx: &PanelContext) {
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {
         let next = answer.stage.and_then(Stage::next).filter(|_| answer.kind == AnswerKind::Right);
         if let Some(next) = next
             && ui.add(primary(format!("Next: {}", next.section))).clicked()
         {
-            facts.send(Command::Stage(next));
+            cx.send(Command::Stage(next));
         }
         if let Some(section) = &answer.section {
             let stage = section.stage;
             let go = ui.add(primary(format!("Go to {}", stage.section)));
             if tip(ui, go, stage.title, None).clicked() {
-                facts.send(Command::Stage(stage));
+                cx.send(Command::Stage(stage));
             }
             let read = ui.button(format!("Read {} in the book", section.number));
             if tip(ui, read, &section.url, None).clicked() {

@@ -1,6 +1,6 @@
 //! The lines of the tracer that are new in a stage, in three languages, and what their words mean.
 
-use crate::app::commands::facts::Facts;
+use crate::app::commands::Snapshot;
 use crate::app::panels::right::scrolling;
 use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{About, hint, small, switch, tip};
@@ -57,8 +57,8 @@ pub struct Code {
 }
 
 impl Code {
-    pub fn ui(&mut self, ui: &mut Ui, facts: &Facts) {
-        let stage = facts.document().stage();
+    pub fn ui(&mut self, ui: &mut Ui, snapshot: &Snapshot) {
+        let stage = snapshot.document().stage();
         if stage != self.stage {
             self.excerpts = coloured(stage.map(excerpts_of).unwrap_or_default());
             self.stage = stage;

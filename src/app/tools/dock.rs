@@ -1,8 +1,7 @@
 //! The dock under the picture: a path, the kept pictures, the lanes, and the error over time.
 
 use super::Tools;
-use crate::app::commands::facts::Facts;
-use crate::app::commands::table::Command;
+use crate::app::commands::{Command, PanelContext};
 use crate::app::model::{Dock, Model, ViewState};
 use crate::app::panels::plot;
 use crate::app::toolkit::menu::item;
@@ -27,7 +26,7 @@ const PICTURE: Vec2 = vec2(132.0, 74.0);
 const CARD: f32 = 102.0;
 
 /// Draws the dock.
-pub fn ui(ui: &mut Ui, model: &mut Model, tools: &mut Tools, kept: &mut KeptActions, facts: &Facts) {
+pub fn ui(ui: &mut Ui, model: &mut Model, tools: &mut Tools, kept: &mut KeptActions, cx: &PanelContext) {
     let Some(dock) = model.remembered.dock else { return };
     let height = ui.ctx().content_rect().height();
     let usual = if height < 700.0 { LOW } else { HEIGHT };
@@ -39,22 +38,22 @@ pub fn ui(ui: &mut Ui, model: &mut Model, tools: &mut Tools, kept: &mut KeptActi
         .show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             let row = Frame::new().inner_margin(Margin::symmetric(16, 0));
-            row.show(ui, |ui| tabs(ui, dock, model, facts));
+            row.show(ui, |ui| tabs(ui, dock, model, cx));
             panel_line(ui);
             Frame::new().inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 }).show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 8.0;
                 match dock {
                     Dock::Path => tools.paths.ui(ui),
-                    Dock::Kept => kept_ui(ui, model, kept, facts),
-                    Dock::Lanes => tools.lanes.ui(ui, facts),
-                    Dock::Error => plot::ui(ui, facts),
+                    Dock::Kept => kept_ui(ui, model, kept, cx),
+                    Dock::Lanes => tools.lanes.ui(ui, cx),
+                    Dock::Error => plot::ui(ui, cx),
                 }
                 ui.take_available_space();
             });
         });
 }
 
-fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts) {
+fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, cx: &PanelContext) {
     let shown = &mut model.remembered.dock;
     let tabs = [
         (Dock::Path, "Path", Command::ClearPaths),
@@ -65,7 +64,7 @@ fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts) {
     let left = |ui: &mut Ui| {
         ui.spacing_mut().item_spacing.x = 16.0;
         for (tab, name, command) in tabs {
-            if tab != Dock::Path || dock == tab || facts.has_paths {
+            if tab != Dock::Path || dock == tab || cx.has_paths {
                 let response = crate::app::toolkit::widgets::tab(ui, name, dock == tab);
                 if tip(ui, response, command.help(), None).clicked() {
                     *shown = Some(tab);
@@ -76,7 +75,7 @@ fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts) {
     let right = |ui: &mut Ui| {
         let close = sign_button(ui, "×", 24.0, "Close dock");
         if tip(ui, close, "Closes the dock (Escape)", None).clicked() {
-            tabs.iter().filter(|(tab, ..)| *tab == dock).for_each(|(.., command)| facts.send(*command));
+            tabs.iter().filter(|(tab, ..)| *tab == dock).for_each(|(.., command)| cx.send(*command));
         }
     };
     Sides::new().height(TABS).shrink_left().show(ui, left, right);
@@ -96,17 +95,17 @@ const MENU: [Command; 6] = [
     Command::DeleteKept,
 ];
 
-fn kept_ui(ui: &mut Ui, model: &mut Model, kept: &mut KeptActions, facts: &Facts) {
+fn kept_ui(ui: &mut Ui, model: &mut Model, kept: &mut KeptActions, cx: &PanelContext) {
     let list = &model.view.kept;
     let Some(chosen) = list.meant() else {
         hint(ui, "Nothing is kept yet. M keeps the picture as it is now, to compare with later.");
         return;
     };
     ui.horizontal_wrapped(|ui| {
-        command_switch(ui, facts, 0.0, &COMPARISONS);
-        command_button(ui, facts, Command::OnlyNoise, "Only noise?");
-        command_button(ui, facts, Command::Keep, "Keep");
-        if !kept.verdict.ui(ui, chosen.number, facts.status.run) {
+        command_switch(ui, cx, 0.0, &COMPARISONS);
+        command_button(ui, cx, Command::OnlyNoise, "Only noise?");
+        command_button(ui, cx, Command::Keep, "Keep");
+        if !kept.verdict.ui(ui, chosen.number, cx.status.run) {
             let memory = words(list.bytes());
             small(ui, format!("Kept pictures take {memory}. They are gone when the window closes."));
         }
@@ -115,13 +114,13 @@ fn kept_ui(ui: &mut Ui, model: &mut Model, kept: &mut KeptActions, facts: &Facts
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(20.0, 8.0);
             for place in 0..model.view.kept.iter().count() {
-                card(ui, place, &mut model.view, facts);
+                card(ui, place, &mut model.view, cx);
             }
         });
     });
 }
 
-fn card(ui: &mut Ui, place: usize, view: &mut ViewState, facts: &Facts) {
+fn card(ui: &mut Ui, place: usize, view: &mut ViewState, cx: &PanelContext) {
     let Some(kept) = view.kept.get(place).cloned() else { return };
     let (is_chosen, title) = (view.kept.chosen() == Some(place), view.kept.title(&kept));
     let layout = Layout::top_down(Align::Min);
@@ -140,7 +139,7 @@ fn card(ui: &mut Ui, place: usize, view: &mut ViewState, facts: &Facts) {
     } else if response.clicked() || response.secondary_clicked() {
         view.kept.choose(place);
     }
-    response.context_menu(|ui| MENU.iter().for_each(|command| _ = item(ui, facts, *command)));
+    response.context_menu(|ui| MENU.iter().for_each(|command| _ = item(ui, cx, *command)));
     let ([width, height], samples, memory) = (kept.size(), kept.samples(), words(kept.bytes()));
     let title = kept.document.title();
     let help = format!("{title}, {samples} samples per pixel, {width} × {height}, {memory}");

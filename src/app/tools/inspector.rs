@@ -2,9 +2,8 @@
 //! from one to the other.
 
 use crate::app::model::{Document, Mode, ViewState};
-use crate::app::toolkit::answers::Query;
-use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{compact, hint, tip};
+use crate::app::toolkit::{Query, theme};
 use crate::app::tracing::second::OtherFilm;
 use crate::app::tracing::subject::{PictureId, Subject};
 use crate::backends::layers::Layer;

@@ -1,11 +1,10 @@
 //! What the lanes of a core do over time, with and without refill: a row per lane, a column per step. The paths are the
 //! tracer's.
 
-use crate::app::commands::facts::Facts;
+use crate::app::commands::Snapshot;
 use crate::app::model::{Device, Document, best_isa};
-use crate::app::toolkit::answers::Query;
-use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{hint, small, swatch};
+use crate::app::toolkit::{Query, theme};
 use crate::backends::explain::{Activity, Timeline, timeline};
 use crate::render_cpu::PathRecorder;
 use crate::stages::Shading;
@@ -59,9 +58,9 @@ impl Lanes {
         });
     }
 
-    pub fn ui(&self, ui: &mut Ui, facts: &Facts) {
-        let is_one_ray = facts.no_rays().is_some() || facts.document().rules().shading != Shading::Path;
-        let empty = match (facts.model.remembered.device, &self.query) {
+    pub fn ui(&self, ui: &mut Ui, snapshot: &Snapshot) {
+        let is_one_ray = snapshot.no_rays().is_some() || snapshot.document().rules().shading != Shading::Path;
+        let empty = match (snapshot.model.remembered.device, &self.query) {
             (Device::Gpu, _) => "The graphics card has its own lanes. Choose CPU to see them.",
             (Device::Reference, _) => "The reference traces one ray at a time. Choose CPU to see lanes.",
             _ if is_one_ray => "In this stage each path is one ray, so no lane waits.",

@@ -1,13 +1,11 @@
 //! What is shown of the picture and how bright, and the histogram.
 
-use crate::app::commands::facts::Facts;
-use crate::app::commands::table::Command;
+use crate::app::commands::{Command, PanelContext};
 use crate::app::model::{Channel, Show, Tone, ViewState};
-use crate::app::toolkit::answers::Query;
-use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{
     About, Header, Number, add_command, compact, entry, fold, hint, list, row, small, switch, tip,
 };
+use crate::app::toolkit::{Query, theme};
 use crate::app::tracing::subject::{PictureId, Subject};
 use crate::film::Histogram;
 use eframe::egui::{
@@ -39,7 +37,7 @@ impl ToneUi {
     }
 
     /// Draws what is shown and how bright, and the histogram.
-    pub fn ui(&mut self, ui: &mut Ui, view: &mut ViewState, facts: &Facts) {
+    pub fn ui(&mut self, ui: &mut Ui, view: &mut ViewState, cx: &PanelContext) {
         self.is_open = false;
         let (show, channel) = (view.show(), view.tone.channel);
         let mut summary = vec![show.name().trim_end_matches('…').to_lowercase()];
@@ -54,21 +52,21 @@ impl ToneUi {
             let about = About::new("Show", "What is shown; files are saved as Picture");
             list(ui, about, show.name(), |ui| {
                 for show in Show::ALL {
-                    let (command, reason) = (Command::Show(show), facts.useless_show(show));
+                    let (command, reason) = (Command::Show(show), cx.model.useless_show(show));
                     let about = About::new(show.name(), command.help()).disabled_if(reason.as_deref());
-                    if entry(ui, facts.is_on(command), about) {
-                        facts.send(command);
+                    if entry(ui, cx.is_on(command), about) {
+                        cx.send(command);
                     }
                 }
             });
             let mut is_denoised = view.is_denoised;
             let denoise = Checkbox::new(&mut is_denoised, Command::Denoise.name());
-            add_command(ui, facts, Command::Denoise, denoise);
-            let reason = facts.no_exposure();
+            add_command(ui, cx, Command::Denoise, denoise);
+            let reason = cx.model.no_exposure();
             brightness_ui(ui, &mut view.tone, reason.as_deref());
             match &self.query.answer {
                 Some(histogram) => paint(ui, histogram, view.tone.exposure),
-                None => _ = hint(ui, if facts.is_working() { "Counting…" } else { "No samples yet" }),
+                None => _ = hint(ui, if cx.is_working() { "Counting…" } else { "No samples yet" }),
             }
         });
     }

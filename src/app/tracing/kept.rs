@@ -4,8 +4,7 @@
 use super::Tracing;
 use super::tracer::Tracer;
 use crate::app::model::{Document, Kept};
-use crate::app::toolkit::answers::{Answers, Query};
-use crate::app::toolkit::theme;
+use crate::app::toolkit::{Answers, Query, theme};
 use crate::film::Film;
 use crate::job::recipe::Recipe;
 use crate::pictures::{Picture, compare};

@@ -1,8 +1,7 @@
 //! Layers of the picture, traced on their own thread: a coarse one at once, then finer ones.
 
 use crate::app::model::{Document, best_isa};
-use crate::app::toolkit::answers::Answers;
-use crate::app::toolkit::texture::Texture;
+use crate::app::toolkit::{Answers, Texture};
 use crate::backends::layers::{Layer, LayerImage};
 use crate::film::to_byte;
 use crate::job::render::{JobError, RenderJob, RenderSettings};

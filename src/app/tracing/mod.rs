@@ -9,7 +9,7 @@ pub mod tracer;
 
 use crate::app::model::changes::Changes;
 use crate::app::model::{Device, Document, Model, Sizing};
-use crate::app::toolkit::toasts::Toasts;
+use crate::app::toolkit::Toasts;
 use crate::film::Film;
 use crate::progressive::Status;
 use eframe::egui::Context;

@@ -3,8 +3,7 @@
 
 use super::tracer::{Shown, Tracer, Want};
 use crate::app::model::{Document, Kept, Mode, Origin, Other, ViewState, differ_in_camera};
-use crate::app::toolkit::answers::Answers;
-use crate::app::toolkit::texture::Texture;
+use crate::app::toolkit::{Answers, Texture};
 use crate::film::Film;
 use crate::progressive::{ReferenceMeans, View};
 use eframe::egui::Context;

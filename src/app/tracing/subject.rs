@@ -2,8 +2,8 @@
 //! the samples of the one before, and at the end of a render or a pause.
 
 use super::Tracing;
-use crate::app::model::{Document, ViewState};
-use crate::app::toolkit::answers::{Answers, Query};
+use crate::app::model::{Document, Found, ViewState};
+use crate::app::toolkit::{Answers, Query};
 use crate::denoise::{Denoised, Halves, denoise};
 use crate::film::Film;
 use crate::progressive::Phase;
@@ -69,9 +69,6 @@ impl<'a> Subject<'a> {
         }
     }
 }
-
-/// The denoised picture of a run's film, or why there is none.
-pub type Found = (u64, Result<Arc<Denoised>, String>);
 
 #[derive(Default)]
 pub struct Denoising {

@@ -2,7 +2,7 @@
 
 use super::preview::{Preview, Previews};
 use crate::app::model::Document;
-use crate::app::toolkit::texture::Texture;
+use crate::app::toolkit::Texture;
 use crate::backends::BackendChoice;
 use crate::film::Film;
 use crate::progressive::{Plan, Progressive, RenderRequest, Status, Stop, View};

@@ -5,7 +5,7 @@ use super::pixel_values::PixelValues;
 use super::sight::Sighted;
 use crate::app::model::spheres::is_lost;
 use crate::app::model::{CheckedScene, Model, Show};
-use crate::app::toolkit::toasts::Toasts;
+use crate::app::toolkit::Toasts;
 use crate::app::tools::tone::ToneUi;
 use crate::app::tracing::Tracing;
 use crate::app::tracing::kept::KeptActions;

@@ -1,6 +1,6 @@
 //! The numbers of pixels, drawn in them when they are large.
 
-use crate::app::toolkit::answers::Query;
+use crate::app::toolkit::Query;
 use crate::app::toolkit::widgets::compact;
 use crate::app::tracing::subject::{PictureId, Subject};
 use eframe::egui::{self, Align2, Color32, Rect, TextStyle, Ui, vec2};

@@ -1,6 +1,6 @@
 //! "Show me": what the window showed before a sight, to return to it.
 
-use super::Placement;
+use super::placement::Placement;
 use crate::app::model::{Document, Mode, Origin, Show, ViewState, With};
 use crate::scene::Camera;
 use crate::stages::{Means, Stage};

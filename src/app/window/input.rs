@@ -1,6 +1,6 @@
 //! Keyboard input, dropped files, and flying.
 
-use crate::app::commands::table::{Command, ROWS};
+use crate::app::commands::{Command, ROWS};
 use crate::app::model::navigation;
 use crate::scene::Camera;
 use eframe::egui::{self, Key, KeyboardShortcut, Modifiers};

@@ -3,13 +3,12 @@
 
 mod frame_log;
 mod input;
-pub mod layout;
+mod layout;
 mod perform;
 mod receive;
 mod shell;
 
-use crate::app::commands::facts::Facts;
-use crate::app::commands::table::Command;
+use crate::app::commands::{Command, Snapshot};
 use crate::app::files::Files;
 use crate::app::files::autosave::{Autosave, Last};
 use crate::app::model::changes::Changes;
@@ -25,7 +24,6 @@ use anyhow::{Context as _, Result};
 use eframe::egui;
 use frame_log::FrameLog;
 use shell::Shell;
-use std::cell::RefCell;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -42,7 +40,7 @@ pub struct Window {
     pub files: Files,
     pub autosave: Autosave,
     pub shell: Shell,
-    /// What is to be done in this frame.
+    /// Commands to run in this frame.
     pub commands: Vec<Command>,
 }
 
@@ -117,7 +115,7 @@ impl Window {
         })
     }
 
-    pub(in crate::app) fn document(&self) -> &Document {
+    pub(super) fn document(&self) -> &Document {
         &self.model.document
     }
 
@@ -126,13 +124,14 @@ impl Window {
         self.commands.push(command);
     }
 
-    /// What panels show.
-    pub fn facts(&self) -> Facts {
-        Facts {
+    /// The state of the window now.
+    pub fn snapshot(&self) -> Snapshot {
+        let [undo, redo] = self.changes.labels(self.document());
+        Snapshot {
             status: self.tracing.main.status().clone(),
             seconds_before: self.tracing.seconds_before,
-            undo: self.changes.earlier(self.document()).map(|other| self.document().difference(&other)),
-            redo: self.changes.later(self.document()).map(|other| self.document().difference(&other)),
+            undo,
+            redo,
             is_coarse: self.tracing.main.is_coarse(),
             has_picture: self.tracing.main.has_picture(self.document()),
             is_moving: self.changes.is_in_gesture,
@@ -144,8 +143,6 @@ impl Window {
             has_sight: self.display.sight.is_some(),
             invalid: self.tracing.invalid.clone(),
             model: self.model.clone(),
-            commands: RefCell::default(),
-            edits: RefCell::default(),
         }
     }
 
@@ -167,7 +164,7 @@ impl Window {
     }
 
     /// Sets fonts and colours, before the first frame.
-    pub(in crate::app) fn dress(&mut self, context: &egui::Context) {
+    pub(super) fn dress(&mut self, context: &egui::Context) {
         if std::mem::replace(&mut self.shell.is_dressed, true) {
             return;
         }
@@ -323,7 +320,7 @@ impl Window {
 
 impl eframe::App for Window {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        Stored::write(&self.model, storage);
+        Stored::write(self.model.remembered.clone(), self.model.view.clone(), storage);
     }
 
     fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {

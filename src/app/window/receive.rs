@@ -1,13 +1,14 @@
 //! What background threads have answered.
 
 use super::Window;
-use crate::app::commands::table::Command;
+use crate::app::commands::Command;
 use crate::app::files::Resumed;
 use crate::app::files::autosave::document_of;
 use crate::app::model::{Dock, Document, Kept, Origin, Source};
 use crate::job::saved::{Opened, Saved};
 use crate::progressive::Stop;
 use eframe::egui::Context;
+use std::sync::Arc;
 
 impl Window {
     /// Takes all answers that have arrived.
@@ -41,7 +42,10 @@ impl Window {
         }
         while let Some(outcome) = self.display.kept.copied.take() {
             match outcome {
-                Ok(kept) => self.add_kept(kept),
+                Ok(kept) => {
+                    self.shell.toasts.end_error("Not kept");
+                    self.add_kept(kept);
+                }
                 Err(reason) => self.shell.toasts.bad(format!("Not kept: {reason}")),
             }
         }
@@ -112,5 +116,28 @@ impl Window {
             self.model.remembered.dock = Some(Dock::Kept);
         }
         self.shell.toasts.good(format!("Kept as number {}", place + 1));
+    }
+
+    /// Watches the scene file, and takes what was read from it again.
+    fn follow_scene_file(&mut self, context: &Context) {
+        let origin = Arc::clone(&self.document().origin);
+        self.files.scene_file.watch(context, &origin);
+        let Source::File(path) = &origin.source else { return };
+        let name = path.file_name().unwrap_or(path.as_os_str()).display();
+        while let Some(recipe) = self.files.scene_file.reread.take() {
+            let is_own = self.document().checked.file().is_some_and(|saved| saved == *path);
+            match recipe {
+                _ if is_own => {}
+                Ok(recipe) => {
+                    let reloaded = self.document().reloaded(recipe);
+                    self.show_document(reloaded);
+                    self.shell.toasts.end_error("Not reloaded");
+                    self.shell.toasts.good(format!("Reloaded {name}; Undo returns"));
+                }
+                Err(reason) => self.shell.toasts.bad(format!(
+                    "Not reloaded: {reason}. The picture shows the last version that could be read"
+                )),
+            }
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::frame_log::{FrameLog, FrameTimes};
 use crate::app::dialogs::Dialogs;
-use crate::app::toolkit::toasts::Toasts;
+use crate::app::toolkit::Toasts;
 use crate::system::interrupt::Interrupt;
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ pub struct Shell {
     pub frame_log: Option<FrameLog>,
     pub frame_times: FrameTimes,
     /// The command that was carried out last.
-    pub performed: Option<crate::app::commands::table::Command>,
+    pub performed: Option<crate::app::commands::Command>,
     /// Something had the keyboard's focus, a popup or a dialog was open, in the frame before.
     pub had_focus: bool,
     pub is_dressed: bool,

@@ -1,33 +1,33 @@
 //! Tests of the left panel.
 
 use super::*;
-use crate::app::tests::{dressed, facts_of};
+use crate::app::tests::{dressed, snapshot_of};
 use eframe::egui::{self, Key, Role};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 
 /// The panel of a window of this command line, as wide as in the window.
-fn panel(words: &str) -> Harness<'static, Facts> {
-    let draw = |ui: &mut Ui, facts: &mut Facts| {
-        let (mut document, mut remembered) = (facts.model.document.clone(), facts.model.remembered.clone());
+fn panel(words: &str) -> Harness<'static, PanelContext> {
+    let draw = |ui: &mut Ui, cx: &mut PanelContext| {
+        let (mut document, mut remembered) = (cx.model.document.clone(), cx.model.remembered.clone());
         egui::Frame::new().inner_margin(egui::Margin::symmetric(16, 8)).show(ui, |ui| {
             ui.set_min_width(200.0);
-            super::ui(ui, &mut document, &mut remembered, facts);
+            super::ui(ui, &mut document, &mut remembered, cx);
         });
-        (facts.model.document, facts.model.remembered) = (document, remembered);
+        (cx.snapshot.model.document, cx.snapshot.model.remembered) = (document, remembered);
     };
-    let mut harness = dressed([232.0, 720.0]).build_ui_state(draw, facts_of(words));
+    let mut harness = dressed([232.0, 720.0]).build_ui_state(draw, PanelContext::new(snapshot_of(words)));
     harness.run_steps(3);
     harness
 }
 
-fn field<'h>(harness: &'h Harness<'_, Facts>, name: &'h str) -> Node<'h> {
+fn field<'h>(harness: &'h Harness<'_, PanelContext>, name: &'h str) -> Node<'h> {
     let mut named = harness.get_all_by_label(name);
     named.find(|node| [Role::SpinButton, Role::TextInput].contains(&node.accesskit_node().role())).unwrap()
 }
 
 /// Types a text into a field and presses Enter.
-fn set(harness: &mut Harness<'_, Facts>, name: &str, text: &str) {
+fn set(harness: &mut Harness<'_, PanelContext>, name: &str, text: &str) {
     field(harness, name).click();
     harness.run_steps(3);
     field(harness, name).type_text(text);
@@ -39,7 +39,7 @@ fn set(harness: &mut Harness<'_, Facts>, name: &str, text: &str) {
 #[test]
 fn a_typed_number_is_applied_once_and_within_its_limits() {
     let mut harness = panel("--stage book");
-    let vfov = |harness: &Harness<'_, Facts>| harness.state().document().camera.vfov_degrees;
+    let vfov = |harness: &Harness<'_, PanelContext>| harness.state().document().camera.vfov_degrees;
     field(&harness, "Field of view").click();
     harness.run_steps(3);
     field(&harness, "Field of view").type_text("45");
@@ -77,11 +77,11 @@ fn a_group_can_be_reset_only_if_it_was_changed() {
 #[test]
 fn another_kind_of_material_keeps_the_colour() {
     let mut harness = panel("--stage glass-schlick");
-    harness.state_mut().model.selected = Some(1);
+    harness.state_mut().snapshot.model.selected = Some(1);
     harness.run_steps(3);
     harness.get_by_label("Metal").click();
     harness.run_steps(2);
-    let edit = harness.state_mut().edits.get_mut().pop();
+    let edit = harness.state_mut().requests.get_mut().edits.pop();
     let body = Body::of(harness.state().document().scene(), 1).unwrap();
     let material = Material::Metal { albedo: body.material.albedo().unwrap(), fuzz: 0.0 };
     assert_eq!(edit, Some(Edit::Change(1, Body { material, ..body })));

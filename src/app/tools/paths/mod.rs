@@ -5,7 +5,7 @@ mod side;
 mod tab;
 
 use crate::app::model::{Document, best_isa};
-use crate::app::toolkit::answers::Query;
+use crate::app::toolkit::Query;
 use crate::backends::explain::{Step, steps};
 use crate::render_cpu::PathRecorder;
 use crate::scene::Sphere;
