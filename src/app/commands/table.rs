@@ -181,7 +181,7 @@ table! {
         needs(has_selection, NO_SPHERE), also("copy ball");
     DeleteSphere "Delete the sphere", "Removes the selected sphere", key(Key::Delete),
         needs(has_selection, NO_SPHERE), also("remove ball");
-    SkyColours "Sky colours…", "Changes the two colours that the sky fades between",
+    SkyColours "Sky colours", "Changes the two colours that the sky fades between",
         off(|f| f.no_rays().map(str::to_owned)), also("background light gradient");
     Home "Reset the camera", "Returns to the camera and lens of the stage", key(Key::Home), line(),
         needs(|f| f.document().camera != f.document().origin.recipe.camera, "This is the camera of the stage"),

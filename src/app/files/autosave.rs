@@ -3,13 +3,11 @@
 
 use super::describer;
 use super::edits::{self, STEPS};
-use super::note::Note;
 use crate::app::model::changes::Changes;
-use crate::app::model::{CheckedScene, Document, Model, Origin};
+use crate::app::model::{Document, Model};
 use crate::app::toolkit::Answers;
 use crate::app::tracing::Tracing;
 use crate::film::{Description, Film, checkpoint};
-use crate::job::recipe::Recipe;
 use crate::job::saved::{self, Saved};
 use crate::progressive::describe::counted;
 use crate::system::console;
@@ -17,7 +15,6 @@ use crate::system::files::{lock_path, write_text};
 use eframe::egui::Context;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Writing a film takes at most one part in this many of the time.
@@ -29,30 +26,13 @@ const AT_ONCE: Duration = Duration::from_millis(200);
 /// How long a window waits for another that is about to end.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// The entry of a film's description with the [`Note`].
-const NOTE: &str = "Window";
-
 /// What the names of files begin with that wait for the user's answer.
 const LEFT: &str = "recovered";
 
 /// The picture of a film, and how many samples per pixel it has.
 pub fn picture_of(path: &Path) -> Option<(Document, u64)> {
     let saved = Saved::describe(path).ok()?;
-    Some((document_of(&saved, &saved.recipe().ok()?), saved.samples()?))
-}
-
-/// The document of a film or picture. One that a window has saved by itself is as it was there.
-pub fn document_of(saved: &Saved, recipe: &Recipe) -> Document {
-    let note = saved.description.get(NOTE).and_then(|note| serde_json::from_str::<Note>(note).ok());
-    let Some(note) = note else { return Document::of_film(recipe, saved.stage()) };
-    let origin = note.origin().filter(|origin| origin.recipe.rules == recipe.rules);
-    let mut document = Document::new(origin.unwrap_or_else(|| Origin::guess(recipe, saved.stage())));
-    if *document.scene() != *recipe.scene {
-        document.checked = Arc::new(CheckedScene::new(Arc::clone(&recipe.scene), recipe.rules));
-    }
-    (document.camera, document.settings) = (recipe.camera, recipe.settings);
-    note.restore(&mut document);
-    document
+    Some((Document::of_film(&saved.recipe().ok()?, saved.stage()), saved.samples()?))
 }
 
 /// The document at the size of the film in the file at `path`, if that is its film.
@@ -283,7 +263,8 @@ impl Autosave {
         if !is_long || !self.films.is_due(context, (status.run, status.samples_per_pixel)) {
             return told;
         }
-        let (path, describe) = (place.film(), describe(document, tracing));
+        let (path, describe) =
+            (place.film(), describer(document, tracing.main.status(), tracing.seconds_before));
         // A film that is gone before it is copied is no failure.
         let answer = self.films.outcomes.answer(context);
         tracing.main.inspect(move |film| {
@@ -307,7 +288,7 @@ impl Autosave {
         }
         let is_kept = self.place.is_some() || is_panic;
         if is_kept && !self.is_restoring && tracing.main.has_samples(&model.document) {
-            let describe = describe(&model.document, tracing);
+            let describe = describer(&model.document, tracing.main.status(), tracing.seconds_before);
             if let Some(film) = tracing.main.take_film().filter(|film| film.sample_count() > 0) {
                 self.save_last(&film, &describe(&film), &model.document.name());
             }
@@ -339,16 +320,6 @@ impl Autosave {
 
 fn write_edits(path: &Path, steps: &[Document]) -> Result<(), String> {
     write_text(path, &edits::to_text(steps)).map_err(|error| error.to_string())
-}
-
-fn describe(document: &Document, tracing: &Tracing) -> impl FnOnce(&Film) -> Description + Send + 'static {
-    let note = serde_json::to_string(&Note::of(document)).unwrap_or_default();
-    let describe = describer(document, tracing.main.status(), tracing.seconds_before);
-    move |film| {
-        let mut description = describe(film);
-        description.set(NOTE, note);
-        description
-    }
 }
 
 fn write(path: &Path, film: &Film, description: &Description) -> Result<(), String> {

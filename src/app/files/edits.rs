@@ -1,12 +1,13 @@
 //! The picture and the last steps of its history as text: a few kB, which the window saves after each edit.
 
-use super::note::Note;
-use crate::app::model::{CheckedScene, Document, Origin};
+use crate::app::model::{CheckedScene, Document, Origin, Source};
 use crate::job::recipe::{Recipe, file};
 use crate::job::render::RenderSettings;
+use crate::progressive::Stop;
 use crate::scene::Camera;
+use crate::stages::Stage;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// So many steps can be undone in the next window.
@@ -20,15 +21,25 @@ struct Edits {
     steps: Vec<Step>,
 }
 
+#[derive(Clone, PartialEq, Serialize, Deserialize)]
+enum From {
+    Stage(String),
+    File(PathBuf),
+    /// The place of the recipe.
+    Recipe(usize),
+}
+
 #[derive(Serialize, Deserialize)]
 struct Step {
-    note: Note,
-    /// The place of the origin's recipe, if neither a stage nor a file has it.
-    origin: Option<usize>,
+    origin: From,
     /// The place of a recipe with the scene, if the origin has another.
     scene: Option<usize>,
     camera: Camera,
     settings: RenderSettings,
+    has_own_size: bool,
+    is_from_file: bool,
+    /// Samples, seconds, error.
+    stop: (Option<u64>, Option<f64>, Option<f64>),
 }
 
 /// Documents that follow each other, oldest first. Scenes that they share are written once.
@@ -43,18 +54,17 @@ pub fn to_text(documents: &[Document]) -> String {
         })
     };
     for document in documents {
-        let (origin, checked) = (&document.origin, &document.checked);
-        let note = Note::of(document);
-        edits.steps.push(Step {
-            origin: (!note.has_origin())
-                .then(|| place(Arc::as_ptr(origin).addr(), &|| origin.recipe.clone())),
-            scene: document
-                .has_changed_scene()
-                .then(|| place(Arc::as_ptr(checked).addr(), &|| document.recipe())),
-            note,
-            camera: document.camera,
-            settings: document.settings,
-        });
+        let Document { origin, checked, camera, settings, has_own_size, is_from_file, .. } = document.clone();
+        let Stop { samples, seconds, noise, .. } = document.stop;
+        let from = match &origin.source {
+            Source::Stage(stage) => From::Stage(stage.id.to_owned()),
+            Source::File(path) => From::File(path.clone()),
+            _ => From::Recipe(place(Arc::as_ptr(&origin).addr(), &|| origin.recipe.clone())),
+        };
+        let scene = document.has_changed_scene();
+        let scene = scene.then(|| place(Arc::as_ptr(&checked).addr(), &|| document.recipe()));
+        let stop = (samples, seconds, noise);
+        edits.steps.push(Step { origin: from, scene, camera, settings, has_own_size, is_from_file, stop });
     }
     serde_json::to_string(&edits).unwrap_or_default()
 }
@@ -70,25 +80,27 @@ pub fn read(path: &Path) -> Vec<Document> {
     // Steps with the same origin and scene share them, as undo expects.
     let mut documents: Vec<(&Step, Document)> = Vec::new();
     for step in &steps {
-        let is_of_same =
-            |other: &&Step| other.origin == step.origin && step.note.has_same_origin(&other.note);
-        let like = documents.iter().find(|(other, _)| is_of_same(other)).map(|(_, like)| like);
-        let fresh = || match step.origin {
-            Some(place) => Some(Origin::guess(&recipe(place)?, None)),
-            None => step.note.origin(),
+        let like = documents.iter().rev().find(|(other, _)| other.origin == step.origin);
+        let fresh = || match &step.origin {
+            From::Stage(id) => Stage::find(id).ok().map(Origin::of_stage),
+            From::File(path) => Some(Origin::new(file::load(path).ok()?, Source::File(path.clone()))),
+            From::Recipe(place) => Some(Origin::guess(&recipe(*place)?, None)),
         };
-        let origin = like.map(|like| Arc::clone(&like.origin)).or_else(|| fresh().map(Arc::new));
-        let Some(origin) = origin else { continue };
-        let mut document = Document::of(Arc::clone(&origin));
-        if let Some(place) = step.scene {
-            let is_like = |other: &&Step| is_of_same(other) && other.scene == step.scene;
-            let like = documents.iter().find(|(other, _)| is_like(other)).map(|(_, like)| &like.checked);
-            let fresh = || recipe(place).map(|own| CheckedScene::new(own.scene, origin.recipe.rules));
-            let Some(checked) = like.map(Arc::clone).or_else(|| fresh().map(Arc::new)) else { continue };
-            document.checked = checked;
-        }
-        (document.camera, document.settings) = (step.camera, step.settings);
-        step.note.restore(&mut document);
+        let origin = like.map(|(_, like)| Arc::clone(&like.origin));
+        let Some(origin) = origin.or_else(|| fresh().map(Arc::new)) else { continue };
+        let like = like.filter(|(other, _)| other.scene == step.scene);
+        let own = || Some(CheckedScene::new(recipe(step.scene?)?.scene, origin.recipe.rules));
+        let checked = like.map(|(_, like)| Arc::clone(&like.checked)).or_else(|| own().map(Arc::new));
+        let (samples, seconds, noise) = step.stop;
+        let document = Document {
+            checked: checked.unwrap_or_else(|| Arc::clone(&origin.scene)),
+            origin,
+            camera: step.camera,
+            settings: step.settings,
+            has_own_size: step.has_own_size,
+            is_from_file: step.is_from_file,
+            stop: Stop { samples, seconds, noise, ..Stop::default() },
+        };
         documents.push((step, document));
     }
     documents.into_iter().map(|(_, document)| document).filter(|document| document.job(1).is_ok()).collect()
@@ -97,9 +109,6 @@ pub fn read(path: &Path) -> Vec<Document> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::Source;
-    use crate::progressive::Stop;
-    use crate::stages::Stage;
 
     fn with_radius(document: &Document, radius: f64) -> Document {
         let mut scene = document.scene().clone();

@@ -3,7 +3,6 @@
 
 pub mod autosave;
 pub mod edits;
-mod note;
 pub mod scene_file;
 
 use crate::app::commands::Command;
@@ -22,6 +21,7 @@ use crate::page::companion;
 use crate::progressive::describe::describe;
 use crate::progressive::{Phase, Plan, Progressive, RenderRequest, Status, Stop};
 use crate::render_cpu::CpuOptions;
+use crate::system::console;
 use crate::system::files::{cache_directory, replace_file};
 use crate::system::interrupt::Interrupt;
 use eframe::egui::{ColorImage, Context};
@@ -104,7 +104,32 @@ impl Files {
     }
 
     pub fn stop_saving(&mut self) {
-        self.sized = None;
+        (self.sized, self.pending_save) = (None, None);
+    }
+
+    /// The name of the file that is saved once its picture has been rendered.
+    pub fn unsaved(&self) -> Option<String> {
+        let path = self.sized.as_ref().map(|sized| &sized.named.1);
+        let path = path.or(self.pending_save.as_ref().map(|(_, path)| path))?;
+        Some(path.file_name().unwrap_or(path.as_os_str()).display().to_string())
+    }
+
+    /// Whether something is still rendered to be saved, or written.
+    pub fn is_saving(&self) -> bool {
+        self.unsaved().is_some() || self.saved.is_open()
+    }
+
+    /// Waits for the files that are being written, at the end of the window.
+    pub fn end(&mut self) {
+        if let Some(name) = self.unsaved() {
+            console::note(&format!("weekender: {name} was not saved: its picture was still being rendered"));
+        }
+        while let Some(outcome) = self.saved.wait() {
+            outcome
+                .err()
+                .into_iter()
+                .for_each(|reason| console::note(&format!("weekender: not saved: {reason}")));
+        }
     }
 
     /// Reports how far the picture is that is rendered to be saved, and saves it at the end.

@@ -254,7 +254,8 @@ impl Document {
         }
         let stop = self.stop;
         match reason {
-            EndReason::NoiseTarget => {
+            // A denoised picture ends with fewer samples than its goal for the raw one needs.
+            EndReason::NoiseTarget | EndReason::Samples if stop.noise.is_some() && stop.samples.is_none() => {
                 let reached = status.error.map_or(f64::INFINITY, |error| error.rmse).min(stop.noise?);
                 let halves = std::iter::successors(stop.noise, |noise| Some(noise / 2.0));
                 let next = halves.take_while(|noise| *noise > 1e-6).find(|noise| *noise < 0.55 * reached);
@@ -268,7 +269,7 @@ impl Document {
                 let seconds = 2.0 * stop.seconds?.max(status.elapsed.as_secs_f64().floor());
                 Some(Stop { seconds: Some(seconds), ..stop })
             }
-            EndReason::Stopped => None,
+            EndReason::NoiseTarget | EndReason::Stopped => None,
         }
     }
 

@@ -76,7 +76,12 @@ pub fn at_depth(camera: &Camera, place: [f64; 2], aspect: f64) -> DVec3 {
 pub fn fly(camera: &Camera, by: DVec3) -> Camera {
     let basis = camera.basis();
     let offset = by.x * basis.u + by.y * basis.v - by.z * basis.w;
-    kept(camera, Camera { look_from: camera.look_from + offset, look_at: camera.look_at + offset, ..*camera })
+    // What is in focus stays so.
+    let is_lens = camera.defocus_angle_degrees > 0.0;
+    let focused =
+        Some(camera.effective_focus_distance() - by.z).filter(|distance| is_lens && *distance > 0.0);
+    let (look_from, look_at) = (camera.look_from + offset, camera.look_at + offset);
+    kept(camera, Camera { look_from, look_at, focus_distance: focused.or(camera.focus_distance), ..*camera })
 }
 
 /// Looks at `point` from the current position.

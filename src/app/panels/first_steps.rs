@@ -12,7 +12,7 @@ const WIDE: f32 = 620.0;
 const STEPS: [&str; 3] = [
     "Drag the picture to look around it. Home returns.",
     "Click a sphere, then drag it or change its material.",
-    "Page Down and Page Up turn the pages of the book.",
+    "Page Up and Page Down turn the pages of the book.",
 ];
 
 /// Draws the card, if it is shown, at the bottom of `ui`.
@@ -60,10 +60,10 @@ fn content(ui: &mut Ui, is_wide: bool, cx: &PanelContext) {
         },
     );
     ui.columns(STEPS.len(), |uis| {
-        uis.iter_mut().enumerate().for_each(|(number, ui)| step(ui, number));
+        uis.iter_mut().enumerate().for_each(|(number, ui)| step(ui, number, cx.model.steps_done[number]));
     });
     ui.horizontal(|ui| {
-        if let Some(first) = Stage::ALL.first() {
+        if let Some(first) = Stage::ALL.first().filter(|first| cx.document().stage() != Some(first)) {
             let response = ui.add(primary(format!("Start the book at {}", first.section)));
             if tip(ui, response, first.what_is_new, None).clicked() {
                 cx.send(Command::Stage(first));
@@ -73,12 +73,13 @@ fn content(ui: &mut Ui, is_wide: bool, cx: &PanelContext) {
     });
 }
 
-/// A step behind its number.
-fn step(ui: &mut Ui, number: usize) {
+/// A step behind its number, or behind a tick once it was done.
+fn step(ui: &mut Ui, number: usize, is_done: bool) {
     ui.horizontal_top(|ui| {
         let text = |text: RichText| Label::new(text.line_height(Some(20.0))).wrap();
-        let accent = theme::colours(ui).accent;
-        ui.add(text(RichText::new((number + 1).to_string()).strong().color(accent)));
+        let (accent, good) = (theme::colours(ui).accent, theme::colours(ui).good);
+        let sign = if is_done { "✔".to_owned() } else { (number + 1).to_string() };
+        ui.add(text(RichText::new(sign).strong().color(if is_done { good } else { accent })));
         ui.add(text(RichText::new(STEPS[number])));
     });
 }

@@ -1,7 +1,7 @@
 //! The pixel inspector: the numbers of what is under the pointer, which in a comparison are those of one side and the change
 //! from one to the other.
 
-use crate::app::model::{Document, Mode, ViewState};
+use crate::app::model::{Document, Mode, ViewState, kind_word};
 use crate::app::toolkit::widgets::{compact, hint, tip};
 use crate::app::toolkit::{Query, theme};
 use crate::app::tracing::second::OtherFilm;
@@ -188,7 +188,10 @@ fn at_other(at: [u32; 2], mine: [u32; 2], theirs: [u32; 2]) -> Option<[u32; 2]> 
 /// The display names of a sphere and its material.
 pub fn names(scene: &Scene, sphere: usize) -> (String, String) {
     let named = &scene.materials[scene.spheres[sphere].material];
-    (format!("sphere {sphere}"), format!("{} ({})", named.name, named.material.kind()))
+    let kind = kind_word(&named.material);
+    let is_said = named.name.starts_with(kind);
+    let name = if is_said { named.name.clone() } else { format!("{}, {kind}", named.name) };
+    (format!("sphere {sphere}"), name)
 }
 
 pub fn header(ui: &mut Ui, [x, y]: [u32; 2], surface: Option<(String, String)>) {
@@ -264,7 +267,7 @@ pub fn table(ui: &mut Ui, rows: &[Row<'_>]) {
 /// The name of the surface at a pixel, and how far away it is.
 fn surface(document: &Document, [x, y]: [u32; 2]) -> Option<(String, String)> {
     let scene = document.scene();
-    if scene.spheres.len() > PICK_LIMIT {
+    if scene.spheres.len() > PICK_LIMIT || document.no_rays().is_some() {
         return None;
     }
     let [width, height] = document.size();

@@ -66,6 +66,10 @@ impl Viewport {
         let room = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(room, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
+        if response.drag_started() {
+            // As a click does.
+            ui.memory_mut(|memory| memory.focused().into_iter().for_each(|id| memory.surrender_focus(id)));
+        }
         let rect = self.place(ui, room, cx);
         let mut touch = Touch::default();
         let is_wipe = view.mode() == Some(Mode::Wipe);

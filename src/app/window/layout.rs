@@ -2,7 +2,7 @@
 
 use super::Window;
 use crate::app::commands::{PanelContext, Requests, Snapshot};
-use crate::app::model::{Model, Remembered, Tab};
+use crate::app::model::{Mode, Model, Remembered, Tab};
 use crate::app::panels::{bar, controls, first_steps, present, right, stage_panel, status};
 use crate::app::toolkit::theme;
 use crate::app::tools::dock;
@@ -136,7 +136,9 @@ impl Window {
             && touch.hovered.is_some()
         {
             let Window { display, tracing, tools, .. } = self;
-            present::magnify(ui, room, at, |ui| {
+            let view = &cx.model.view;
+            let has_scale = view.mode() == Some(Mode::Difference) || view.show().scale(&view.tone).is_some();
+            present::magnify(ui, room, at, has_scale, |ui| {
                 numbers(ui, cx, display, &tracing.second, &tools.inspector);
             });
         }

@@ -9,6 +9,7 @@ mod receive;
 mod shell;
 
 use crate::app::commands::{Command, Snapshot};
+use crate::app::dialogs::Dialog;
 use crate::app::files::Files;
 use crate::app::files::autosave::{Autosave, Last};
 use crate::app::model::changes::Changes;
@@ -103,6 +104,7 @@ impl Window {
                 is_paused: false,
                 is_full_screen: false,
                 has_first_steps,
+                steps_done: [false; 3],
                 presentation: None,
             },
             tracing: Tracing::new().context("cannot start the render thread")?,
@@ -152,6 +154,7 @@ impl Window {
         self.dress(&context);
         self.poll(&context);
         self.receive(&context);
+        self.follow_close(&context);
         self.take_input(&context);
         self.perform_all(&context);
         self.layout(ui);
@@ -199,8 +202,12 @@ impl Window {
     }
 
     fn take_input(&mut self, context: &egui::Context) {
-        for path in input::dropped(context) {
-            self.files.open(context, path);
+        let dropped = input::dropped(context);
+        if let Some(path) = dropped.first() {
+            self.files.open(context, path.clone());
+        }
+        if dropped.len() > 1 {
+            self.shell.toasts.good("Only the first of the files is opened");
         }
         if self.shell.dialogs.is_open() {
             return;
@@ -225,6 +232,19 @@ impl Window {
         }
     }
 
+    /// Asks before the window closes while a picture is still rendered to be saved.
+    fn follow_close(&mut self, context: &egui::Context) {
+        let is_asked = context.input(|input| input.viewport().close_requested());
+        let unsaved = self.files.unsaved().filter(|_| is_asked && !self.shell.is_interrupted());
+        if let Some(name) = unsaved {
+            context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.shell.dialogs.open(Dialog::Leave(name));
+        } else if self.shell.leaves_when_saved && !self.files.is_saving() {
+            self.shell.leaves_when_saved = false;
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+
     fn perform_all(&mut self, context: &egui::Context) {
         for command in std::mem::take(&mut self.commands) {
             self.perform(context, command);
@@ -237,11 +257,12 @@ impl Window {
         let count = self.document().scene().spheres.len();
         self.model.selected = self.model.selected.filter(|sphere| *sphere < count);
         if let Err(error) = self.document().camera.validate() {
-            self.shell.toasts.bad(error.to_string());
+            self.shell.toasts.good(error.to_string());
             self.model.document.camera = self.changes.last.camera;
         }
         self.shell.toasts.follow(&self.model.document);
         self.ask_about_size();
+        self.model.note_steps(&self.changes.last);
         let document = &self.model.document;
         // A picture without noise ends at its own number of samples, whatever the user prefers.
         if !document.is_from_file && document.origin.usual_stop().samples.is_none() {
@@ -276,6 +297,9 @@ impl Window {
             let words =
                 format!("Not saved by itself: {reason}; rendering goes on, and saving is tried again");
             shell.toasts.bad(words);
+        }
+        if !autosave.has_failed() {
+            shell.toasts.end_error("Not saved by itself");
         }
         tools.follow(context, model, &subject, is_moving);
         if !has_second {
@@ -314,6 +338,7 @@ impl Drop for Window {
 
 impl Window {
     fn end(&mut self) {
+        self.files.end();
         self.autosave.end(&self.model, &self.changes, &mut self.tracing);
     }
 }
@@ -321,6 +346,7 @@ impl Window {
 impl eframe::App for Window {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         Stored::write(self.model.remembered.clone(), self.model.view.clone(), storage);
+        Stored::forget_full_screen(storage);
     }
 
     fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {

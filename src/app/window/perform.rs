@@ -76,7 +76,7 @@ impl Window {
             C::NextSphere => model.selected = spheres::neighbour(document.scene(), model.selected, true),
             C::PreviousSphere => model.selected = spheres::neighbour(document.scene(), model.selected, false),
             C::FocusSphere => self.focus_sphere(),
-            C::SkyColours => shell.dialogs.open(Dialog::Sky),
+            C::SkyColours => self.run(context, C::Field("Sky")),
             C::Home => document.camera = document.origin.recipe.camera,
             C::AddBookmark => self.add_bookmark(),
             C::Bookmark(place) => {
@@ -511,6 +511,11 @@ impl Window {
             Outcome::Size(size) => {
                 self.tracing.sizer.accepted = Some(size);
                 self.model.document.give_size(size);
+            }
+            Outcome::Leave { saves: true } => self.shell.leaves_when_saved = true,
+            Outcome::Leave { saves: false } => {
+                self.files.stop_saving();
+                context.send_viewport_cmd(ViewportCommand::Close);
             }
             Outcome::Stay | Outcome::Close => {}
         }

@@ -3,7 +3,6 @@
 use super::Window;
 use crate::app::commands::Command;
 use crate::app::files::Resumed;
-use crate::app::files::autosave::document_of;
 use crate::app::model::{Dock, Document, Kept, Origin, Source};
 use crate::job::saved::{Opened, Saved};
 use crate::progressive::Stop;
@@ -22,6 +21,7 @@ impl Window {
                     self.shell.toasts.good_with(format!("Saved {name}"), &[Command::ShowInFolder]);
                 }
                 Err(reason) => {
+                    self.shell.leaves_when_saved = false;
                     self.shell.toasts.bad(format!("Not saved: {reason}"));
                     self.shell.toasts.add_offers(&[Command::Save]);
                 }
@@ -73,10 +73,9 @@ impl Window {
         let is_left = self.autosave.is_answered(&path);
         let mut document = match &saved {
             None => Document::new(Origin::new(recipe, Source::File(path.clone()))),
-            Some(saved) => document_of(saved, &recipe),
+            Some(saved) => Document::of_film(&recipe, saved.stage()),
         };
-        (document.has_own_size, document.is_from_file) =
-            (document.has_own_size || !is_left, document.is_from_file || !is_left);
+        (document.has_own_size, document.is_from_file) = (true, true);
         if let Some(samples) = saved.as_ref().filter(|saved| saved.film.is_none()).and_then(Saved::samples) {
             document.stop = Stop::at_samples(samples);
         }
