@@ -154,7 +154,11 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
     // The flags of a subcommand alone: reading `--device auto` asks the system for its GPUs.
     let Some((_, own)) = matches.subcommand() else {
         let flags = render::RenderFlags::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
-        return render::request(flags, &matches).map_err(Failure::Input);
+        let request = match flags.animation.is_given() && !flags.list {
+            true => animation::frames(flags).map(|options| Request::Frames(Box::new(options))),
+            false => render::request(flags, &matches),
+        };
+        return request.map_err(Failure::Input);
     };
     let mut command = Command::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
     if let Command::Plan(options) = &mut command {

@@ -1,9 +1,9 @@
 //! Rendering, in the window or to files.
 
-use super::animation::{self, AnimationFlags};
 use super::sources::{self, ChosenRecipe, PictureFlags, SampleFlags};
 use super::values::{
-    DrawWith, ProgressChoice, file_ending, parse_duration, parse_noise_target, parse_seconds,
+    DrawWith, ProgressChoice, file_ending, parse_duration, parse_noise_target, parse_seconds, parse_turn,
+    range,
 };
 use super::{Request, backend, is_given};
 use crate::backends::BackendChoice;
@@ -12,10 +12,12 @@ use crate::job::recipe::{Recipe, plain_name};
 use crate::job::render::RenderJob;
 use crate::job::saved;
 use crate::progressive::{Plan, Stop};
+use crate::scene::animation::{FRAME_LIMIT, Turn};
 use crate::stages::Stage;
 use crate::system::files::{STANDARD, ShownPath};
 use anyhow::{Result, bail, ensure};
-use clap::{ArgMatches, Args};
+use clap::{ArgGroup, ArgMatches, Args};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -68,6 +70,26 @@ pub(super) struct StopFlags {
     /// Estimated error: root mean square over pixels and channels, linear radiance
     #[arg(long, value_name = "RMSE", value_parser = parse_noise_target, conflicts_with = "AnimationFlags")]
     noise_target: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Animation", group = ArgGroup::new("moving").multiple(true).conflicts_with("sample_range"))]
+pub(super) struct AnimationFlags {
+    /// Render frames A to B - 1 of an animation to --out; the camera moves by --turntable or by the keyframes of the scene
+    /// file [default with --turntable: one turn]
+    #[arg(long, value_name = "A..B", value_parser = range(FRAME_LIMIT, "0..120"), group = "moving")]
+    pub frames: Option<Range<u32>>,
+    /// Let the camera circle around --look-at about --vup: the frames of a turn, or the degrees between two frames, such
+    /// as 1.5deg or -3deg [without a value: 120 frames]
+    #[arg(long, value_name = "FRAMES|DEGREES", value_parser = parse_turn, num_args = 0..=1,
+          require_equals = true, default_missing_value = "120", group = "moving")]
+    pub turntable: Option<Turn>,
+}
+
+impl AnimationFlags {
+    pub fn is_given(&self) -> bool {
+        self.frames.is_some() || self.turntable.is_some()
+    }
 }
 
 #[derive(Debug, Args)]
@@ -174,9 +196,6 @@ pub struct BatchOptions {
 pub(super) fn request(mut flags: RenderFlags, matches: &ArgMatches) -> Result<Request> {
     if flags.list {
         return Ok(Request::List);
-    }
-    if flags.animation.is_given() {
-        return Ok(Request::Frames(Box::new(animation::frames(flags)?)));
     }
     let files = &mut flags.files;
     if files.go_on && files.checkpoint.as_ref().is_some_and(|film| film.exists()) {

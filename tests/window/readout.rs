@@ -81,7 +81,10 @@ fn the_numbers_are_those_of_the_pixel_that_is_drawn_under_the_pointer() {
             if mode != "presented"
                 && let Some(colour) = drawn(&mut harness, point)
             {
-                assert_eq!(colour, bytes, "{name}");
+                if colour != bytes {
+                    harness.render().unwrap().save("/tmp/win/readout.png").unwrap();
+                }
+                assert_eq!(colour, bytes, "{name} at {point:?}");
             }
         }
         commands.iter().rev().for_each(|command| send(&mut harness, *command));

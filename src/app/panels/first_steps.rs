@@ -4,7 +4,7 @@ use crate::app::commands::{Command, PanelContext};
 use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{command_button, primary, sign_button, tip};
 use crate::stages::Stage;
-use eframe::egui::{self, Frame, Label, Margin, RichText, Sides, Stroke, Ui};
+use eframe::egui::{self, Frame, Label, Margin, RichText, Role, Sides, Stroke, Ui, WidgetInfo, vec2};
 
 /// Narrower cards are higher, points.
 const WIDE: f32 = 620.0;
@@ -77,9 +77,15 @@ fn content(ui: &mut Ui, is_wide: bool, cx: &PanelContext) {
 fn step(ui: &mut Ui, number: usize, is_done: bool) {
     ui.horizontal_top(|ui| {
         let text = |text: RichText| Label::new(text.line_height(Some(20.0))).wrap();
-        let (accent, good) = (theme::colours(ui).accent, theme::colours(ui).good);
-        let sign = if is_done { "✔".to_owned() } else { (number + 1).to_string() };
-        ui.add(text(RichText::new(sign).strong().color(if is_done { good } else { accent })));
+        let accent = theme::colours(ui).accent;
+        let number_ui = ui.add(text(RichText::new((number + 1).to_string()).strong().color(accent)));
+        if is_done {
+            let (at, stroke) = (number_ui.rect.center(), Stroke::new(2.0, theme::colours(ui).good));
+            ui.painter().rect_filled(number_ui.rect, 0.0, theme::colours(ui).panel);
+            let tick = [vec2(-5.0, 0.0), vec2(-1.0, 4.0), vec2(5.0, -5.0)].map(|to| at + to);
+            ui.painter().line(tick.to_vec(), stroke);
+            number_ui.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{}, done", number + 1)));
+        }
         ui.add(text(RichText::new(STEPS[number])));
     });
 }

@@ -3,7 +3,7 @@
 //! Common faults are repaired and reported. Sources: the manual pages of netpbm; Paul Debevec, "PFM Portable FloatMap
 //! Image Format".
 
-use super::read::{Damage, ReadPicture, Values, check_memory, pixel_count};
+use super::decoded::{Damage, ReadPicture, Values, check_memory, pixel_count};
 use crate::film::Film;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use std::borrow::Cow;

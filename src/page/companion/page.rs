@@ -2,9 +2,10 @@
 
 use super::directive;
 use super::library::Fault;
-use super::pictures::Picture;
+use super::picture::Picture;
 use super::prose;
-use super::site::{Site, Uses};
+use super::site::Site;
+use super::uses::Uses;
 use crate::page::gallery::Panel;
 use crate::page::web;
 use crate::stages::{BOOK_URL, Stage, book_url, heading};
@@ -156,7 +157,7 @@ fn navigation(site: &Site) -> Markup {
 fn section(site: &Site, place: usize, uses: &mut Uses) -> Result<Markup, Fault> {
     let chapter = &site.chapters[place];
     let (id, title) = (&chapter.id, &chapter.facts.title);
-    let text = prose::chapter(site, chapter, uses)?;
+    let text = prose::chapter(site, chapter, directive::html, uses)?;
     let of_book = |number| {
         let found = heading(number).map(|heading| (number, book_url(number), heading));
         found.ok_or_else(|| Fault::new(&chapter.file, 1, format!("the book has no chapter {number:?}")))
