@@ -1,0 +1,179 @@
+//! A picture as its file holds it, and what its values mean.
+
+use crate::stages::Transfer;
+use crate::system::memory;
+use anyhow::{Result, ensure};
+
+/// What integer values mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Encoding {
+    /// As Weekender and the book write them: the transfer, then `floor(256 v)`. Values of another largest one than 255 or
+    /// 65535 may also be rounded.
+    Book(Transfer),
+    /// As in the book, but with this exponent.
+    Gamma(f64),
+    /// The curve of sRGB (IEC 61966-2-1), rounded, as most other programs write pictures.
+    Srgb,
+}
+
+/// A fault of a file that was repaired when it was read.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Damage {
+    pub title: String,
+    pub remedy: &'static str,
+}
+
+impl Damage {
+    pub(super) fn new(title: impl Into<String>, remedy: &'static str) -> Self {
+        Damage { title: title.into(), remedy }
+    }
+}
+
+/// A picture as its file holds it, row by row from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReadPicture {
+    pub width: u32,
+    pub height: u32,
+    /// Name of the format, such as "P3".
+    pub format: &'static str,
+    pub values: Values,
+    pub damages: Vec<Damage>,
+    /// What the reader left out or assumed.
+    pub notes: Vec<String>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// RGB from 0 to `most`.
+    Integers { most: u16, rgb: Vec<[u16; 3]> },
+    /// Linear RGB, and which channels are stored in 16 bits.
+    Floats { rgb: Vec<[f32; 3]>, halves: [bool; 3] },
+}
+
+/// The linear values of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Linear {
+    /// RGB. A channel at the top of its integer range is NaN, since it only gives a lower bound.
+    pub pixels: Vec<[f64; 3]>,
+    /// Largest quantisation error of each channel in either direction; `None` for 32-bit floats.
+    pub steps: Option<Vec<[f64; 3]>>,
+    /// The value from which channels are NaN; infinite for floats.
+    pub limit: f64,
+}
+
+impl ReadPicture {
+    /// `encoding` is the meaning of integers.
+    pub fn linear(&self, encoding: Encoding) -> Linear {
+        match &self.values {
+            Values::Floats { rgb, halves } => {
+                let step =
+                    |pixel: &[f32; 3]| [0, 1, 2].map(|c| if halves[c] { half_step(pixel[c]) } else { 0.0 });
+                Linear {
+                    pixels: rgb.iter().map(|pixel| pixel.map(f64::from)).collect(),
+                    steps: halves.contains(&true).then(|| rgb.iter().map(step).collect()),
+                    limit: f64::INFINITY,
+                }
+            }
+            Values::Integers { most, rgb } => {
+                let (width, height) = (self.width as usize, self.height as usize);
+                let intervals = rgb.iter().enumerate().map(|(index, triple)| {
+                    triple.map(|value| encoding.interval(value, *most, index / width, height))
+                });
+                let halves =
+                    |pixel: [[f64; 2]; 3], sign: f64| pixel.map(|[low, high]| 0.5 * (high + sign * low));
+                let (pixels, steps) =
+                    intervals.map(|pixel| (halves(pixel, 1.0), halves(pixel, -1.0))).unzip();
+                let [limit, _] = encoding.ends(*most, *most, height - 1, height);
+                Linear { pixels, steps: Some(steps), limit }
+            }
+        }
+    }
+}
+
+/// Half the distance between a 16-bit float and its neighbours.
+fn half_step(x: f32) -> f64 {
+    let exponent = (x.to_bits() >> 23 & 0xff) as i32 - 127;
+    f64::from(exponent.max(-14) - 11).exp2()
+}
+
+/// Largest number of pixels that is read.
+pub(super) const PIXEL_LIMIT: u64 = 1 << 28;
+
+/// Number of pixels, or an error if the size is out of range.
+pub(super) fn pixel_count(width: u32, height: u32) -> Result<usize> {
+    let count = u64::from(width) * u64::from(height);
+    ensure!(
+        (1..=PIXEL_LIMIT).contains(&count),
+        "its size is {width}x{height}; only 1 to {PIXEL_LIMIT} pixels can be read"
+    );
+    Ok(count as usize)
+}
+
+/// Most memory per pixel while a picture is read: for the file's data, the decoded data, and the numbers with their
+/// quantisation steps.
+const BYTES_PER_PIXEL: u64 = 80;
+
+/// Returns an error if the picture would not fit into memory, with `more` bytes for each pixel than usual.
+pub(super) fn check_memory(width: u32, height: u32, more: u64) -> Result<()> {
+    let bytes = u64::from(width) * u64::from(height) * (BYTES_PER_PIXEL + more);
+    let what = || format!("a picture of {width}x{height} pixels");
+    Ok(memory::check(what, bytes, "close other programs or make it smaller")?)
+}
+
+/// A note if some pixels are translucent.
+pub(super) fn note_on_alpha(translucent: usize) -> Option<String> {
+    let note = || format!("{translucent} of its pixels have an alpha other than 1, which is ignored");
+    (translucent > 0).then(note)
+}
+
+impl Encoding {
+    /// The interval of linear values that are stored as `value` of up to `most`. At the top it is NaN, as all brighter
+    /// values are stored so.
+    pub(super) fn interval(self, value: u16, most: u16, row: usize, height: usize) -> [f64; 2] {
+        if value >= most { [f64::NAN; 2] } else { self.ends(value, most, row, height) }
+    }
+
+    /// The least and the largest linear value that are stored as `value` of up to `most`, if nothing is brighter.
+    fn ends(self, value: u16, most: u16, row: usize, height: usize) -> [f64; 2] {
+        let ends = if self == Encoding::Srgb { rounded(value, most) } else { displayed(value, most) };
+        ends.map(|end| self.linear(end.max(0.0), row, height))
+    }
+
+    /// The linear value of a displayed one, within `0..=1`.
+    pub fn linear(self, displayed: f64, row: usize, height: usize) -> f64 {
+        match self {
+            Encoding::Book(transfer) if transfer.is_gamma(row, height) => displayed * displayed,
+            Encoding::Book(_) => displayed,
+            Encoding::Gamma(exponent) => displayed.powf(exponent),
+            Encoding::Srgb if displayed <= 0.04045 => displayed / 12.92,
+            Encoding::Srgb => ((displayed + 0.055) / 1.055).powf(2.4),
+        }
+    }
+
+    /// The displayed value of a linear one.
+    pub fn displayed(self, linear: f64, row: usize, height: usize) -> f64 {
+        match self {
+            Encoding::Book(transfer) if transfer.is_gamma(row, height) => linear.sqrt(),
+            Encoding::Book(_) => linear,
+            Encoding::Gamma(exponent) => linear.powf(1.0 / exponent),
+            Encoding::Srgb if linear <= 0.003_130_8 => 12.92 * linear,
+            Encoding::Srgb => 1.055 * linear.powf(1.0 / 2.4) - 0.055,
+        }
+    }
+}
+
+/// The least and the largest displayed value that a program of the book stores as `value`: of 8 and 16 bits it cuts off,
+/// with another largest value it may also round.
+pub fn displayed(value: u16, most: u16) -> [f64; 2] {
+    let levels = f64::from(most) + 1.0;
+    let [low, high] = [f64::from(value) / levels, (f64::from(value) + 1.0) / levels];
+    if matches!(most, 0xff | 0xffff) {
+        return [low, high];
+    }
+    let [rounded_low, rounded_high] = rounded(value, most);
+    [low.min(rounded_low), high.max(rounded_high)]
+}
+
+fn rounded(value: u16, most: u16) -> [f64; 2] {
+    [-0.5, 0.5].map(|part| (f64::from(value) + part) / f64::from(most))
+}
