@@ -155,7 +155,7 @@ table! {
     CheckPicture "Check my picture…", "Finds the mistake in a picture that your own program has rendered",
         also("wrong mistake homework verify compare");
     Save "Save…", "Saves the picture, the film or the scene", keys(CTRL, Key::S), line(),
-        needs(is_live, KEPT_IS_SHOWN), also("export png ppm exr toml download film scene");
+        needs(is_live, KEPT_IS_SHOWN), also("save as export png ppm exr toml download film scene");
     ShowInFolder "Show in folder", "Opens the folder of the file that was saved or opened last",
         needs(|f| !f.model.remembered.recent.is_empty(), "Nothing has been saved or opened yet"),
         also("directory explorer finder");
@@ -257,7 +257,7 @@ table! {
         ),
         on(|f| f.model.view.mode().is_some() && f.model.view.with() == With::Book),
         also("rounding f64 precision");
-    ListPaths "Paths of a pixel", "Shows the paths of the pixel under the pointer, ray by ray", key(Key::T),
+    ListPaths "Paths of this pixel", "Shows the paths of the pixel under the pointer, ray by ray", key(Key::T),
         line(),
         off(|f| match f.no_rays() {
             Some(reason) => Some(reason.to_owned()),
@@ -318,7 +318,7 @@ table! {
     StopSaving "Stop", "Gives up this render", unlisted();
     Recover "Go on with it", "Shows it, and adds more samples", unlisted();
     DeleteLeft "Delete it", "Deletes what the last window has left", unlisted();
-    WholeCompanion "Write the full one",
+    WholeCompanion "Render its pictures in full quality",
         "Renders its pictures at full size and without noise, which takes some minutes", unlisted();
     StopCompanion "Stop", "Leaves out the pictures that are missing", unlisted();
     GoOnFromKept "Go on from it", "Makes it the picture that is traced, and adds more samples",

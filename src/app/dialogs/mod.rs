@@ -67,7 +67,8 @@ impl Dialogs {
             modal = modal.backdrop_color(Color32::TRANSPARENT);
         }
         let modal = modal.show(ui.ctx(), |ui| {
-            ui.set_max_width((room.x - 64.0).min(512.0));
+            let widest = if matches!(dialog, Dialog::Help) { 880.0 } else { 512.0 };
+            ui.set_max_width((room.x - 64.0).min(widest));
             match dialog {
                 Dialog::Palette(finder) => palette::ui(finder, ui, (room.y - 180.0).clamp(100.0, 360.0), cx),
                 Dialog::Stages(finder) => {

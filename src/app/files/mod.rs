@@ -252,9 +252,14 @@ impl Files {
     /// Reads a scene file, picture or film.
     pub fn open(&mut self, context: &Context, path: PathBuf) {
         let work = move || match saved::open(&path) {
+            Err(_) if !path.exists() => {
+                let [name, folder] = [path.file_name(), path.parent().map(Path::as_os_str)]
+                    .map(|part| part.unwrap_or_default().display().to_string());
+                Err(format!("there is no file {name} in {folder}"))
+            }
             Ok(opened) => Ok(Ok(opened)),
-            Err(OpenError::Picture(_)) if path.exists() && is_named_picture(&path) => Ok(Err(path)),
-            Err(OpenError::Picture(_)) if path.exists() => {
+            Err(OpenError::Picture(_)) if is_named_picture(&path) => Ok(Err(path)),
+            Err(OpenError::Picture(_)) => {
                 Err(format!("{} is no picture, film or scene (PNG, PPM, EXR, TOML)", path.display()))
             }
             Err(error) => Err(error.to_string()),

@@ -96,12 +96,13 @@ impl Document {
         let [settings, of_other] =
             [&self.settings, &other.settings].map(|of| RenderSettings { width: 0, height: 0, ..*of });
         if !Arc::ptr_eq(&self.origin, &other.origin) {
-            "another picture"
+            "change of picture"
         } else if !Arc::ptr_eq(&self.checked, &other.checked) {
             match self.scene().spheres.len().cmp(&other.scene().spheres.len()) {
                 std::cmp::Ordering::Equal if self.scene().sky != other.scene().sky => "sky",
                 std::cmp::Ordering::Equal => "sphere",
-                _ => "number of spheres",
+                std::cmp::Ordering::Greater => "added sphere",
+                std::cmp::Ordering::Less => "deleted sphere",
             }
         } else if mine.vfov_degrees != theirs.vfov_degrees {
             "field of view"

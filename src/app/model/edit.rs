@@ -224,6 +224,9 @@ mod tests {
         after.validate().unwrap();
         assert_eq!((Body::of(&after, 2), Body::of(&after, 1)), (Some(body), Body::of(&before, 1)));
         assert_eq!(names(&after), ["grey", "glass", "metal", "metal-2"]);
+        // A name that says nothing of the kind stays.
+        let body = Body { material: METAL, ..Body::of(&before, 0).unwrap() };
+        assert_eq!(names(&Edit::Change(0, body).apply(&before).0), ["grey", "glass"]);
     }
 
     #[test]
