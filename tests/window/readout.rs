@@ -79,12 +79,10 @@ fn the_numbers_are_those_of_the_pixel_that_is_drawn_under_the_pointer() {
             });
             let bytes = harness.state().readout().unwrap().1;
             if mode != "presented"
-                && let Some(colour) = drawn(&mut harness, point)
+                // Beside the pointer, which is drawn, too.
+                && let Some(colour) = drawn(&mut harness, point - vec2(3.0, 3.0))
             {
-                if colour != bytes {
-                    harness.render().unwrap().save("/tmp/win/readout.png").unwrap();
-                }
-                assert_eq!(colour, bytes, "{name} at {point:?}");
+                assert_eq!(colour, bytes, "{name}");
             }
         }
         commands.iter().rev().for_each(|command| send(&mut harness, *command));

@@ -145,6 +145,9 @@ mod tests {
         let flown = fly(&CAMERA, DVec3::new(1.0, 2.0, 3.0));
         close(flown.look_from, DVec3::new(1.0, 2.0, 1.0));
         close(flown.look_at, DVec3::new(1.0, 2.0, -3.0));
+        let lens = Camera { defocus_angle_degrees: 1.0, ..CAMERA };
+        let distances = [1.0, -2.0, 9.0].map(|forward| fly(&lens, DVec3::Z * forward).focus_distance);
+        assert_eq!(distances, [Some(3.0), Some(6.0), None], "what is in focus stays so, unless it is passed");
         assert_eq!(focus(&CAMERA, DVec3::new(9.0, 9.0, 1.0)).focus_distance, Some(3.0));
         assert_eq!(recentre(&CAMERA, CAMERA.look_from), CAMERA, "no direction: not made");
         assert_eq!(focus(&CAMERA, DVec3::new(0.0, 0.0, 5.0)), CAMERA, "behind the eye: not made");

@@ -21,7 +21,7 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
         return;
     }
     let is_wide = ui.available_width() >= WIDE;
-    let height = if is_wide { 140.0 } else { 168.0 };
+    let height = if is_wide { 148.0 } else { 176.0 };
     if ui.available_height() < 2.0 * height {
         // The picture comes first.
         return;

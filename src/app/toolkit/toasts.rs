@@ -176,6 +176,8 @@ impl Toast {
             let room = ui.available_width() - 28.0;
             ui.vertical(|ui| {
                 ui.set_width(room);
+                // In line with the cross.
+                ui.add_space(2.0);
                 let label = ui.add(Label::new(RichText::new(&self.text).color(color)).wrap());
                 let live = if self.is_error { Live::Assertive } else { Live::Polite };
                 label.ctx.accesskit_node_builder(label.id, |node| node.set_live(live));

@@ -112,6 +112,7 @@ mod tests {
             ([140, 0, 0], Color32::WHITE),
             ([0, 100, 0], Color32::WHITE),
             ([0, 0, 255], Color32::WHITE),
+            ([204, 0, 0], Color32::WHITE),
             ([255, 0, 0], Color32::BLACK),
             ([0, 160, 0], Color32::BLACK),
             ([128, 128, 128], Color32::BLACK),
