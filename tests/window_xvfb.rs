@@ -237,7 +237,7 @@ fn a_person_can_use_the_window() {
 
     // During a pause, saving and copying use the same film.
     display.key("space");
-    log.wait_for_command("Pause or go on", 1);
+    log.wait_for_command("Pause or resume", 1);
     std::thread::sleep(Duration::from_millis(500));
     let saved = home.path().join("saved.png");
     save(&display, &saved);

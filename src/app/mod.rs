@@ -1,10 +1,10 @@
 //! The window. The image refines while the user watches, and can be explored and edited meanwhile.
 //!
-//! `model` holds what the user has chosen, without widgets or drawing. Each panel is a function of the part of the
-//! model that it may change, and of `Facts`, which it shows and asks for [`Command`]s; so do menus, keys and the
-//! palette. Each asker of a background thread owns the slot in which its answers arrive. Only [`Window`] knows
-//! everything: it carries out the commands and decides what to render. The tracer runs on its own thread, and the
-//! window's thread never waits for it.
+//! `model` holds the user's choices, without widgets or drawing. Each panel is a function of the part of the model that
+//! it may change, and of a snapshot of the rest; whatever else it wants, it requests as a [`Command`], like menus, keys
+//! and the palette. Whoever asks a background thread owns the slot for its answers. Only [`Window`] knows everything: it
+//! carries out the commands and decides what to render. The tracer runs on its own thread, and the window's thread never
+//! waits for it.
 
 mod commands;
 mod dialogs;
@@ -30,7 +30,7 @@ use eframe::egui::{self, Rect, Vec2, pos2, vec2};
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 
-/// What the user can do when no window can be opened.
+/// The remedy when no window can be opened.
 const REMEDY: &str = "add --batch to render to a file without a window, for example: \
                       weekender --batch --stage glass-schlick --out glass.png";
 
@@ -201,13 +201,13 @@ mod tests {
         window(&format!("weekender {words} --device cpu")).snapshot()
     }
 
-    /// What draws a part of the window with the window's own style, which is dark.
+    /// A harness that draws a part of the window in the window's own dark style.
     pub(super) fn dressed<State>(size: [f32; 2]) -> HarnessBuilder<State> {
         Harness::<State>::builder().with_size(size).with_context_setup(toolkit::theme::install)
     }
 
     #[test]
-    fn a_window_whose_monitor_is_gone_is_brought_back() {
+    fn windows_of_missing_monitors_are_moved() {
         let rect = |x, y, width, height| Rect::from_min_size(pos2(x, y), vec2(width, height));
         let monitor = rect(0.0, 0.0, 1920.0, 1080.0);
         for (window, expected) in [
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn the_window_is_drawn_by_what_is_wished_and_else_by_a_gpu_if_there_is_one() {
+    fn draws_with_the_requested_renderer_and_prefers_a_gpu() {
         use eframe::Renderer::{Glow, Wgpu};
         assert_eq!([DrawWith::Wgpu, DrawWith::Gl].map(renderers), [&[Wgpu], &[Glow]]);
         let has_gpu = model::device::adapter().is_ok_and(|adapter| !adapter.is_software);

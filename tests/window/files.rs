@@ -44,7 +44,7 @@ fn rendered_again(path: &Path) -> Vec<u8> {
 }
 
 #[test]
-fn what_is_saved_can_be_opened_again_and_other_stages_stay_as_the_user_has_them() {
+fn saved_files_open_again_and_keep_other_stages() {
     let directory = tempfile::tempdir().unwrap();
     let mut harness = open("--stage defocus --size 48x27 --samples 40");
     harness.state_mut().document_mut().camera.vfov_degrees = 31.0;
@@ -95,7 +95,7 @@ fn failures_are_told_and_what_is_shown_stays() {
     until(&mut harness, "a picture", has_samples(1));
     for (name, content, told) in [
         ("missing.png", None, "Not opened: "),
-        ("notes.txt", Some("nothing of the kind"), "notes.txt is no picture"),
+        ("notes.txt", Some("nothing of the kind"), "notes.txt is not a picture"),
         ("broken.toml", Some("[camera"), "broken.toml"),
         ("broken.exr", Some("nothing"), "broken.exr"),
     ] {
@@ -204,7 +204,7 @@ fn an_offer_to_undo_goes_when_something_else_was_changed() {
 }
 
 #[test]
-fn a_picture_of_another_size_is_rendered_beside_the_one_that_is_shown() {
+fn saving_at_another_size_renders_in_the_background() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("large.png");
     let mut harness = open("--stage defocus --size 48x27 --samples 6");
@@ -224,7 +224,7 @@ fn a_picture_of_another_size_is_rendered_beside_the_one_that_is_shown() {
     let read = image::open(&path).unwrap();
     assert_eq!([read.width(), read.height()], [96, 54]);
     assert_eq!(read_description(&path).unwrap().get("Samples"), Some("6"));
-    assert_eq!(harness.state().status().run, run, "the picture on the screen goes on");
+    assert_eq!(harness.state().status().run, run, "the picture on the screen continues");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What the tests ask of a window.
+//! Questions of the tests to a window.
 
 use eframe::egui;
 use weekender::app::{Command, Document, Remembered, Show, Window};

@@ -1,4 +1,4 @@
-//! What the next window takes over: settings, and the film that the last one saved by itself.
+//! State that the next window takes over: settings, and the autosaved film.
 
 use crate::common::{has_samples, opened, send, until};
 use crate::questions::Ask as _;
@@ -33,7 +33,7 @@ fn held(window: &Window) -> u64 {
 }
 
 fn has_offer(harness: &Harness<'_, Window>) -> bool {
-    harness.query_by_label("Go on with it").is_some()
+    harness.query_by_label("Resume").is_some()
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn a_window_that_ended_early_comes_back_with_its_film_unless_another_picture_is_
         other.state_mut().on_exit(None);
     }
     let mut last = window("--device cpu", state.path(), 3600);
-    last.get_by_label("Go on with it").click();
+    last.get_by_label("Resume").click();
     until(&mut last, "its samples", |window| held(window) == samples);
     assert_eq!(last.state().shown_document().camera.vfov_degrees, 31.0);
     last.state_mut().on_exit(None);
@@ -155,7 +155,7 @@ fn what_cannot_be_written_is_told_and_rendering_goes_on() {
     // Nothing can be written where a folder is.
     std::fs::create_dir_all(state.path().join("autosave.exr/full")).unwrap();
     let mut harness = window(&format!("{PICTURE} --samples 4000000000"), state.path(), 0);
-    let told = "Not saved by itself: ";
+    let told = "Autosave failed: ";
     until(&mut harness, told, |window| window.messages().iter().any(|text| text.starts_with(told)));
     let samples = harness.state().status().samples_per_pixel;
     until(&mut harness, "more samples", |window| window.status().samples_per_pixel > samples);
@@ -185,7 +185,7 @@ fn remembering(arguments: &str, stored: &Stored) -> Harness<'static, Window> {
 }
 
 #[test]
-fn settings_are_remembered_and_those_of_another_version_ignored() {
+fn settings_of_the_same_version_are_remembered() {
     let mut stored = Stored::default();
     let mut harness = remembering("--stage metal --size 16x9", &stored);
     for command in [

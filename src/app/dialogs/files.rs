@@ -22,7 +22,7 @@ use std::time::{Duration, Instant};
 pub struct System {
     /// There is one; else the field for a path is shown at once.
     pub is_there: bool,
-    /// What the dialog was for, where it began, and the path that was chosen, if there was a dialog to choose in.
+    /// The purpose of the dialog, its first folder, and the chosen path; no path if there was no dialog.
     chosen: Answers<(Purpose, PathBuf, Option<PathBuf>)>,
 }
 
@@ -202,7 +202,7 @@ impl SaveBox {
             }
             false => ui.weak("The folder will be created."),
             true if self.what != What::Scene && shown.size() != size => {
-                ui.weak("Renders first, and you can go on meanwhile.")
+                ui.weak("Renders first; you can keep working.")
             }
             true => ui.label(""),
         };

@@ -11,7 +11,7 @@ const GROUPS: [&str; 8] = ["The picture", "Camera", "File", "Edit", "View", "Ren
 /// From this width on there are two columns, points.
 const TWO_COLUMNS: f32 = 640.0;
 
-/// What the mouse does, and keys that no single command has: group, words and keys.
+/// Mouse actions, and keys that belong to no single command: group, words and keys.
 const MOUSE: [(&str, &str, &str); 18] = [
     ("The picture", "Zoom at the pointer", "Ctrl and wheel"),
     ("The picture", "Move the picture", "Shift drag"),

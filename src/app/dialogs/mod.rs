@@ -35,7 +35,7 @@ pub enum Dialog {
     Leave(String),
 }
 
-/// The open dialog, if any, and the system's file dialog.
+/// The open dialog, and the system's file dialog.
 #[derive(Default)]
 pub struct Dialogs {
     open: Option<Dialog>,

@@ -59,7 +59,7 @@ impl Place {
         let path = lock_in(directory);
         let has_ended_early = path.exists();
         let lock = lock_path(&path, PATIENCE)
-            .inspect_err(|error| log::info!("this window does not save anything by itself: {error}"))
+            .inspect_err(|error| log::info!("autosave is off in this window: {error}"))
             .ok()?;
         Some((Place { directory: directory.to_owned(), _lock: lock }, has_ended_early))
     }

@@ -54,7 +54,7 @@ struct Sized {
 #[derive(Default)]
 pub struct Files {
     pub scene_file: SceneFile,
-    /// The film of the command line, to go on with.
+    /// The film of the command line, to resume.
     pub pending_resume: Option<(PathBuf, RenderJob)>,
     /// To be saved once there are samples.
     pub pending_save: Option<(OutputFormat, PathBuf)>,
@@ -260,7 +260,7 @@ impl Files {
             Ok(opened) => Ok(Ok(opened)),
             Err(OpenError::Picture(_)) if is_named_picture(&path) => Ok(Err(path)),
             Err(OpenError::Picture(_)) => {
-                Err(format!("{} is no picture, film or scene (PNG, PPM, EXR, TOML)", path.display()))
+                Err(format!("{} is not a picture, film or scene (PNG, PPM, EXR, TOML)", path.display()))
             }
             Err(error) => Err(error.to_string()),
         };
@@ -304,7 +304,7 @@ fn write(
     written.map(|()| path).map_err(|error| error.to_string())
 }
 
-/// What makes the description of a film of the document, whose render has this status.
+/// Makes the description of a film of the document, whose render has this status.
 pub fn describer(
     document: &Document,
     status: &Status,
@@ -323,7 +323,7 @@ pub fn describer(
 mod tests {
     use super::*;
     #[test]
-    fn a_file_that_is_not_opened_may_be_a_picture_to_check() {
+    fn unknown_pictures_are_offered_to_the_check() {
         let directory = tempfile::tempdir().unwrap();
         let (mut files, context) = (Files::default(), Context::default());
         let white = image::RgbImage::from_pixel(4, 2, image::Rgb([255; 3]));

@@ -138,7 +138,7 @@ mod tests {
     use eframe::egui::{Event, Modifiers, PointerButton, Pos2, RawInput};
 
     #[test]
-    fn a_move_with_long_frames_is_one_step() {
+    fn a_move_with_long_frames_is_one_undo_step() {
         let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
         let mut changes = Changes::new(document.clone());
         let first = document.camera;
@@ -154,11 +154,11 @@ mod tests {
     }
 
     #[test]
-    fn a_change_that_needs_no_other_film_can_be_taken_back_too() {
+    fn changes_that_keep_the_film_can_be_undone() {
         let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
         let mut changes = Changes::new(document.clone());
         document.stop.seconds = Some(7.0);
-        assert!(!changes.follow(&context, &document), "the same film goes on");
+        assert!(!changes.follow(&context, &document), "the film stays the same");
         assert!(changes.earlier(&document).is_some());
         changes.undo(&mut document);
         assert_eq!(document.stop.seconds, None);
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_changed_while_the_button_is_held_is_one_step() {
+    fn a_drag_is_one_undo_step() {
         let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
         let mut changes = Changes::new(document.clone());
         press(&context, true);
@@ -181,7 +181,7 @@ mod tests {
         for seconds in [7.0, 8.0] {
             document.stop.seconds = Some(seconds);
             assert!(!changes.follow(&context, &document));
-            assert!(changes.moved.is_none(), "the film goes on, so nothing is previewed");
+            assert!(changes.moved.is_none(), "the film stays the same, so nothing is previewed");
         }
         press(&context, false);
         changes.follow(&context, &document);

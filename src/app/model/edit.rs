@@ -168,7 +168,7 @@ mod tests {
         assert_eq!(free_name(&scene, "glass-2"), "glass-3");
         assert_eq!(free_name(&scene, "glass"), "glass-3");
         scene.add_material("dark-blue", METAL);
-        assert_eq!(free_name(&scene, "dark-blue"), "dark-blue-2", "a word is no number");
+        assert_eq!(free_name(&scene, "dark-blue"), "dark-blue-2", "a word is not a number");
     }
 
     #[test]

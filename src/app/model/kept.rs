@@ -27,7 +27,7 @@ fn small_copy(context: &Context, film: &Film, document: &Document) -> TextureHan
 pub struct Kept {
     /// A number that no other kept picture has.
     pub number: u64,
-    /// What it shows.
+    /// The document that it shows.
     pub document: Document,
     /// Its exact sums.
     pub film: Arc<Film>,
@@ -133,7 +133,7 @@ impl KeptList {
         self.chosen = self.chosen.and_then(after).or_else(|| self.pictures.len().checked_sub(1));
     }
 
-    /// What all of them take in memory.
+    /// Memory of all of them, bytes.
     pub fn bytes(&self) -> u64 {
         self.iter().map(|kept| kept.bytes()).sum()
     }

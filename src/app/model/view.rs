@@ -1,4 +1,4 @@
-//! What the viewport shows: a view of the film, or a comparison with another picture.
+//! The view in the viewport: a view of the film, or a comparison with another picture.
 
 use super::{CheckedScene, Document, Kept, KeptList, Origin, Show, Tone};
 use crate::denoise::Denoised;
@@ -29,7 +29,7 @@ pub enum With {
     Kept,
 }
 
-/// What is traced to compare the main picture with.
+/// The picture that is traced for comparison with the main picture.
 #[derive(Clone)]
 pub enum Other {
     /// Another stage.
@@ -211,7 +211,7 @@ impl ViewState {
         }
     }
 
-    /// What is traced to compare `document` with, if anything.
+    /// The picture that is traced for comparison with `document`.
     pub fn compared(&self, document: &Document) -> Option<Other> {
         let origin = &document.origin;
         let by_the_book = || Other::ByTheBook(Arc::clone(origin), Arc::clone(&document.checked));

@@ -122,7 +122,7 @@ fn device(ui: &mut Ui, cx: &PanelContext) {
 
 fn pause(ui: &mut Ui, cx: &PanelContext) {
     let label = match cx.model.is_paused {
-        _ if cx.further().is_some() => "Go on",
+        _ if cx.further().is_some() => "Continue",
         true => "Resume",
         false => "Pause",
     };

@@ -19,7 +19,7 @@ use glam::DVec3;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-/// What a coordinate can be, scene units.
+/// Limits of a coordinate, scene units.
 const POSITIONS: RangeInclusive<f64> = -LENGTH_LIMIT..=LENGTH_LIMIT;
 
 /// The first chapter whose pictures need another up vector or a lens.
@@ -287,7 +287,7 @@ fn whole(ui: &mut Ui, about: About<'_>, value: &mut u32, limits: RangeInclusive<
     row(ui, about, |ui| Number::new(about, limits).whole_field(ui, width, value));
 }
 
-/// What ends the render. A choice replaces what the command line has set.
+/// The stop condition. A choice replaces the one of the command line.
 fn stop(ui: &mut Ui, stop: &mut Stop, has_error: bool, usual: u64) {
     let no_error = (!has_error).then_some("Switch on \u{201c}Estimate the error\u{201d} under Tracer first");
     let choices = [
@@ -401,7 +401,7 @@ fn threads_and_lanes(ui: &mut Ui, remembered: &mut Remembered) {
     );
 }
 
-/// A list of counts, the first of which is automatic.
+/// A list of counts, with automatic first.
 fn count(ui: &mut Ui, about: About<'_>, chosen: &mut Option<usize>, counts: Vec<usize>) {
     let words =
         |count: Option<usize>| count.map_or_else(|| "automatic".to_owned(), |count| count.to_string());

@@ -75,7 +75,7 @@ fn show_me(ui: &mut Ui, stage: &Stage, cx: &PanelContext) {
     }
 }
 
-/// The picture to compare with and how, if there is one that teaches something.
+/// The picture to compare with and how, for stages that have one.
 fn compare_ui(ui: &mut Ui, cx: &PanelContext) {
     let is_book = cx.model.view.with() == With::Book;
     let other = match cx.document().stage().and_then(partner) {

@@ -17,7 +17,7 @@ use eframe::egui::{
 
 const HEIGHT: f32 = 32.0;
 
-/// Assistive technology reads the sentence at most once in so many seconds.
+/// Least time between two readings of the sentence by assistive technology, seconds.
 const READ_SECONDS: f64 = 5.0;
 
 const ERROR_HELP: &str = "How far a pixel usually is from the finished picture, in per cent of white; estimated from \
@@ -93,7 +93,7 @@ fn left_out(ui: &mut Ui, count: u64) {
     }
 }
 
-/// What the tracer is doing.
+/// The state of the render in one sentence.
 pub fn sentence(snapshot: &Snapshot) -> String {
     let (status, stop) = (&*snapshot.status, snapshot.document().stop);
     if let Some(reason) = &snapshot.invalid {

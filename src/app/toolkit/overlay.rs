@@ -1,4 +1,4 @@
-//! What lies over a picture: titles, and the divider of a wipe.
+//! Overlays of a picture: titles, and the divider of a wipe.
 
 use super::theme;
 use eframe::egui::text::{LayoutJob, TextWrapping};

@@ -22,7 +22,7 @@ struct Toast {
     since: Instant,
     /// It stays until it is closed or withdrawn.
     stays: bool,
-    /// What it offers to do.
+    /// Commands that it offers.
     offers: Vec<Command>,
     /// The document in which Undo and Redo do what it offers, once that is known.
     of: Option<Document>,

@@ -22,7 +22,7 @@ type Compared = Option<([u32; 2], [Texture; 3])>;
 /// A picture that was checked.
 type Checked = (Answer, Compared);
 
-/// What the middle of the window shows of the two pictures.
+/// The picture in the middle of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 enum Side {
     Yours,
@@ -85,7 +85,7 @@ impl Check {
         }
     }
 
-    /// What was checked, in words.
+    /// A description of the checked picture.
     pub fn words(&self) -> Option<String> {
         let (_, pictures) = self.shown.as_ref()?;
         let ([width, height], _) = pictures.as_ref()?;
@@ -179,7 +179,7 @@ impl Check {
         }
     }
 
-    /// Draws the two pictures in the middle of the window, in place of the traced one, if there are any. Returns the room.
+    /// Draws the two pictures in the middle of the window, in place of the traced one. Returns the room; `None` without pictures.
     pub fn picture(&mut self, ui: &mut Ui) -> Option<Rect> {
         let (answer, pictures) = self.shown.as_ref()?;
         let (pixels, [yours, ours, difference]) = pictures.as_ref()?;
@@ -324,7 +324,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_that_is_no_picture_gets_an_answer() {
+    fn files_that_are_not_pictures_get_an_answer() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("notes.txt");
         std::fs::write(&path, "no picture").unwrap();

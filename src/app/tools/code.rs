@@ -10,7 +10,7 @@ use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{FontSelection, Frame, Grid, Label, Margin, RichText, Sides, TextStyle, Ui};
 use std::sync::LazyLock;
 
-/// What words of the code mean that are not in the book.
+/// Meanings of words in the code that are not in the book.
 const WORDS: [(&str, &str); 18] = [
     ("coin", "a random number from 0 to 1"),
     ("f0", "the share that is reflected head on: 4 % for glass"),
@@ -52,7 +52,7 @@ pub struct Code {
     /// The stage whose excerpts these are.
     stage: Option<&'static Stage>,
     excerpts: Vec<Coloured>,
-    /// The chosen language, if any.
+    /// The chosen language.
     language: Option<&'static str>,
 }
 
@@ -64,7 +64,7 @@ impl Code {
             self.stage = stage;
         }
         scrolling(ui, |ui| match stage {
-            None => _ = hint(ui, "This picture is no stage of the book, so there is no code to show."),
+            None => _ = hint(ui, "This picture is not a stage of the book, so there is no code to show."),
             Some(_) if self.excerpts.is_empty() => {
                 _ = hint(ui, "This stage needs no new code: only its scene and settings are new.");
             }

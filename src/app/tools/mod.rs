@@ -1,4 +1,4 @@
-//! What explains the picture: pixel, paths, lanes, code, and the check of the user's own picture.
+//! Tools that explain the picture: pixel, paths, lanes, code, and the check of the user's own picture.
 
 pub mod check;
 pub mod code;

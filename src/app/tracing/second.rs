@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub struct Second {
     /// `None` until another picture is traced.
     pub tracer: Option<Tracer>,
-    /// What was traced last.
+    /// The picture that was traced last.
     pub of: Option<(Other, Arc<Origin>)>,
     /// Its film when it was last read.
     film: Option<Arc<ReferenceMeans>>,
@@ -174,11 +174,11 @@ mod tests {
         let late = second.films.answer(&context);
         second.document_of(Other::Stage(&Stage::ALL[1]), &mine);
         late.give(Ok(Arc::new(ReferenceMeans { width: 1, height: 1, means: vec![[0.5; 3]] })));
-        assert!(second.films.take().is_none(), "another picture is compared by now");
+        assert!(second.films.take().is_none(), "another picture is compared meanwhile");
     }
 
     #[test]
-    fn the_other_stage_is_seen_by_my_camera_unless_that_is_the_difference() {
+    fn the_other_stage_shares_the_camera_unless_cameras_differ() {
         let mut second = Second::default();
         let mut of_cameras = Vec::new();
         for stage in Stage::ALL {

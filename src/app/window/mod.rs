@@ -31,9 +31,9 @@ use std::time::{Duration, Instant};
 /// The window of the program.
 #[doc(hidden)]
 pub struct Window {
-    /// What the user has chosen.
+    /// The user's choices.
     pub model: Model,
-    /// What can be undone.
+    /// The undo history.
     pub changes: Changes,
     pub tracing: Tracing,
     pub display: Display,
@@ -294,12 +294,11 @@ impl Window {
         files.follow(context, &subject);
         files.follow_sized(context, &mut shell.toasts);
         if let Some(reason) = autosave.follow(context, (&model.document, changes), tracing) {
-            let words =
-                format!("Not saved by itself: {reason}; rendering goes on, and saving is tried again");
+            let words = format!("Autosave failed: {reason}. Rendering continues; the next save will retry");
             shell.toasts.bad(words);
         }
         if !autosave.has_failed() {
-            shell.toasts.end_error("Not saved by itself");
+            shell.toasts.end_error("Autosave failed");
         }
         tools.follow(context, model, &subject, is_moving);
         if !has_second {

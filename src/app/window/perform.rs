@@ -79,9 +79,7 @@ impl Window {
             C::SkyColours => self.run(context, C::Field("Sky")),
             C::Home => document.camera = document.origin.recipe.camera,
             C::AddBookmark => self.add_bookmark(),
-            C::Bookmark(place) => {
-                remembered.bookmarks.get(place).into_iter().for_each(|to| document.camera = to.camera)
-            }
+            C::Bookmark(at) => remembered.bookmarks.get(at).iter().for_each(|to| document.camera = to.camera),
 
             C::Fit => display.viewport.placement.fit(),
             C::ActualSize => display.viewport.placement.actual_size(),
@@ -144,19 +142,16 @@ impl Window {
             C::GoOnFromKept => self.go_on_from_kept(),
             C::DeleteKept => view.delete_kept(),
 
-            C::Stages => self.list_stages(false),
-            C::ExtremeScenes => self.list_stages(true),
+            C::Stages | C::ExtremeScenes => self.list_stages(command == C::ExtremeScenes),
             C::Stage(stage) => self.show_origin(Origin::of_stage(stage)),
             C::Extreme(case) => self.show_origin(Origin::of_case(case)),
-            C::PreviousStage => self.step_stage(false),
-            C::NextStage => self.step_stage(true),
+            C::PreviousStage | C::NextStage => self.step_stage(command == C::NextStage),
             C::ShowMe => self.toggle_sight(),
             C::Wipe => self.compare(Mode::Wipe),
             C::Difference => self.compare(Mode::Difference),
             C::BookArithmetic => view.toggle(Mode::Wipe, With::Book),
             C::ListPaths => self.list_paths(context),
-            C::NextRay => tools.paths.step(true),
-            C::PreviousRay => tools.paths.step(false),
+            C::NextRay | C::PreviousRay => tools.paths.step(command == C::NextRay),
             C::ClearPaths => {
                 tools.paths.forget();
                 remembered.dock.take_if(|dock| *dock == Dock::Path);
@@ -165,8 +160,7 @@ impl Window {
                 let url = document.stage().map_or_else(|| BOOK_URL.into(), Stage::url);
                 self.open_url(context, url);
             }
-            C::Companion => self.write_companion(context, true),
-            C::WholeCompanion => self.write_companion(context, false),
+            C::Companion | C::WholeCompanion => self.write_companion(context, command == C::Companion),
             C::StopCompanion => files.stop_companion(),
 
             C::FirstSteps => {
@@ -327,7 +321,7 @@ impl Window {
 
     // View
 
-    /// Compares with the other stage; a picture that is no stage, with the book's arithmetic.
+    /// Compares with the other stage or, without a stage, with the book's arithmetic.
     pub(super) fn compare(&mut self, mode: Mode) {
         let is_by_book = self.document().stage().is_none() || self.model.view.with() == With::Book;
         self.model.view.toggle(mode, if is_by_book { With::Book } else { With::Stage });
@@ -578,7 +572,7 @@ impl Window {
         match edits::read(&path).pop() {
             Some(document) => {
                 self.show_document(document);
-                self.shell.toasts.good(format!("Going on with {}", self.document().place()));
+                self.shell.toasts.good(format!("Resumed {}", self.document().place()));
             }
             None => self.files.open(context, path),
         }

@@ -1,4 +1,4 @@
-//! What background threads have answered.
+//! Takes the answers of background threads.
 
 use super::Window;
 use crate::app::commands::Command;
@@ -81,7 +81,7 @@ impl Window {
         }
         self.show_document(document);
         self.shell.toasts.good(if is_left {
-            format!("Going on with {}", self.document().place())
+            format!("Resumed {}", self.document().place())
         } else {
             self.model.remembered.note_recent(&path);
             let name = path.file_name().unwrap_or(path.as_os_str()).display();
@@ -104,7 +104,7 @@ impl Window {
         }
         self.adopt(film.film, film.seconds);
         if !is_quiet {
-            self.shell.toasts.good(format!("Going on with {}", self.document().place()));
+            self.shell.toasts.good(format!("Resumed {}", self.document().place()));
             self.model.remembered.note_recent(&path);
         }
     }

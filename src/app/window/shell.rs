@@ -1,4 +1,4 @@
-//! What surrounds the picture: dialogs, messages, the presentation, keyboard focus, and the log of frames.
+//! The shell around the picture: dialogs, messages, keyboard focus, and the log of frames.
 
 use super::frame_log::{FrameLog, FrameTimes};
 use crate::app::dialogs::Dialogs;

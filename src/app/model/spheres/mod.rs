@@ -49,7 +49,7 @@ pub fn edit(model: &mut Model, edit: Edit) -> Result<(), String> {
     )
     .map_err(|error| error.to_string())?;
     let (scene, selected) = edit.apply(scene);
-    // A value that was typed or dragged back is no change.
+    // A value that was typed or dragged back is not a change.
     let checked = if scene == *recipe.scene {
         Arc::clone(&document.origin.scene)
     } else {
@@ -77,7 +77,7 @@ pub fn inside(document: &Document) -> bool {
         && spheres.iter().any(|sphere| clearance(sphere, eye) < 0.0)
 }
 
-/// Whether the camera sees nothing but sky and ground, and that of the stage sees more.
+/// Whether the camera sees only sky and ground, while the stage's camera sees more.
 pub fn is_lost(document: &Document) -> bool {
     let home = document.origin.recipe.camera;
     document.camera != home && sees_nothing(document, &document.camera) && !sees_nothing(document, &home)
@@ -99,7 +99,7 @@ fn sees_nothing(document: &Document, camera: &Camera) -> bool {
     scene.spheres.len() <= MANY && (0..rays * rays).all(is_empty)
 }
 
-/// The opaque ground that the camera is above of.
+/// The opaque ground below the camera.
 pub fn ground<'a>(scene: &'a Scene, camera: &'a Camera) -> impl Iterator<Item = &'a Sphere> {
     let is_opaque = |sphere: &&Sphere| !matches!(scene.material_of(sphere), Material::Dielectric { .. });
     let is_below = |sphere: &&Sphere| is_ground(sphere, camera) && clearance(sphere, camera.look_from) > 0.0;
