@@ -12,7 +12,7 @@ use crate::job::output::OutputFormat;
 use crate::job::recipe::{Recipe, plain_name};
 use crate::job::render::RenderJob;
 use crate::job::saved;
-use crate::progressive::{Plan, Stop};
+use crate::progressive::{NoiseOf, Plan, Stop};
 use crate::scene::animation::{FRAME_LIMIT, Turn};
 use crate::stages::Stage;
 use crate::system::files::{STANDARD, ShownPath};
@@ -155,6 +155,8 @@ pub struct WindowOptions {
     pub stop: Option<Stop>,
     /// The film to resume.
     pub resume: Option<PathBuf>,
+    /// Whether the picture was read from a film or another picture.
+    pub is_saved: bool,
     /// Whether to open the usual first picture instead of the last one.
     pub is_fresh: bool,
     /// Tracing time between autosaves.
@@ -178,6 +180,8 @@ pub struct BatchOptions {
     pub stage: Option<&'static Stage>,
     /// Which samples, and when to stop.
     pub plan: Plan,
+    /// Whether the picture is denoised.
+    pub denoise: bool,
     /// File of the picture.
     pub out: PathBuf,
     pub format: OutputFormat,
@@ -252,6 +256,7 @@ fn window(flags: RenderFlags, opened: Option<&Path>, matches: &ArgMatches) -> Re
         is_size_given: picture.size.is_some(),
         is_picture_given: picture.is_given() || saved.is_some() || samples.estimate_error.is_some(),
         is_device_given: backend::FLAGS.into_iter().any(|flag| is_given(matches, flag)),
+        is_saved: saved.is_some() && !picture.has_source(),
         resume: files.resume.clone(),
         is_fresh: flags.fresh,
         autosave_every: flags.autosave_every,
@@ -291,6 +296,7 @@ fn batch(flags: RenderFlags) -> Result<BatchOptions> {
     }
     Ok(BatchOptions {
         plan: plan(&flags, &recipe),
+        denoise: flags.files.denoise,
         recipe,
         job,
         stage,
@@ -324,7 +330,8 @@ fn plan(flags: &RenderFlags, recipe: &Recipe) -> Plan {
         (None, None) if seconds.is_some() || noise.is_some() => (0, None),
         (None, _) => (0, Some(recipe.samples_per_pixel)),
     };
-    let stop = Stop { samples, seconds, noise, is_denoised: flags.files.denoise };
+    let noise_of = if flags.files.denoise { NoiseOf::Denoised } else { NoiseOf::Film };
+    let stop = Stop { samples, seconds, noise, noise_of };
     Plan { first_sample, pass_target: Plan::BATCH_PASS, ..Plan::until(stop) }
 }
 

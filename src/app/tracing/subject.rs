@@ -116,6 +116,8 @@ impl Denoising {
                 answer.give_from("denoise", move || {
                     let outcome = halves.map_err(|reason| reason.to_string());
                     let outcome = outcome.and_then(|halves| denoise(halves, &stop).ok_or_else(String::new));
+                    let outcome =
+                        outcome.and_then(|found| found.checked().map_err(|reason| reason.to_string()));
                     Ok(((run, outcome.map(Arc::new)), begin.elapsed()))
                 });
             });
