@@ -54,8 +54,6 @@ macro_rules! tags {
     };
 }
 
-pub(crate) use tags;
-
 tags!(Roots { Nearer = "ROOTS_NEARER", Both = "ROOTS_BOTH", Farther = "ROOTS_FARTHER" });
 
 tags!(Shading {
