@@ -80,7 +80,7 @@ tags!(Transfer {
 tags!(SamplerKind { Independent = "SAMPLER_INDEPENDENT", Sobol = "SAMPLER_SOBOL" });
 
 /// The values of one enumeration in WGSL.
-pub(crate) fn values<T: Tag>() -> String {
+fn values<T: Tag>() -> String {
     T::ALL.iter().fold(String::new(), |mut text, value| {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "const {} = {}u;", value.constant(), value.tag());
