@@ -115,7 +115,8 @@ fn stuck_paths_are_not_resumed() {
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [5, 3], 30, SamplerKind::Independent, false);
     assert!(rendered(&mut used, &job, 8) == rendered(&mut gpu(options).unwrap(), &job, 8));
-    assert_eq!(used.take_messages(), Vec::<String>::new());
+    let messages = used.take_messages();
+    assert!(!messages.iter().any(|message| message.contains("traced again")), "{messages:?}");
 }
 
 /// A film keeps the samples it has; those still on the device are traced again and do not count twice.
