@@ -1,4 +1,5 @@
-//! Gives the Windows program its icon, version and manifest; other systems keep them beside the program.
+//! Tells the program whether it is built in its own repository. Gives the Windows program its icon, version and
+//! manifest; other systems keep them beside the program.
 
 /// Double-clicked in Explorer, the program opens no console (Windows 11 24H2 and later).
 const MANIFEST: &str = r#"<assembly xmlns="urn:schemas-microsoft-com:asm.v1" manifestVersion="1.0">
@@ -13,6 +14,12 @@ const MANIFEST: &str = r#"<assembly xmlns="urn:schemas-microsoft-com:asm.v1" man
 
 fn main() {
     println!("cargo::rerun-if-changed=assets/package/icons/weekender.ico");
+    // Unpacked inside another repository, the sources would get the commit of that one.
+    println!("cargo::rustc-check-cfg=cfg(has_repository)");
+    let own = std::path::Path::new(".git");
+    if own.is_file() || own.join("HEAD").is_file() {
+        println!("cargo::rustc-cfg=has_repository");
+    }
     if std::env::var("CARGO_CFG_TARGET_OS").as_deref() != Ok("windows") {
         return;
     }

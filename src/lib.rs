@@ -1,6 +1,6 @@
 //! Weekender: the path tracer of *Ray Tracing in One Weekend* as a viewer, a headless renderer and a lesson.
 //!
-//! What is re-exported here is the library: a [`Recipe`] describes a picture, a [`RenderJob`] is a checked recipe, a
+//! The re-exports here are the library: a [`Recipe`] describes a picture, a [`RenderJob`] is a checked recipe, a
 //! [`Renderer`] adds its samples to a [`Film`], and [`write_image`] writes it. The examples use nothing else. The rooms
 //! are public for the program, its tests and its benchmarks only, and change without notice.
 

@@ -12,10 +12,15 @@ use weekender::system::failure::Failure;
 use weekender::system::{interrupt, journal};
 
 /// Here, and not in the library, so that a commit does not compile the library again.
+#[cfg(has_repository)]
 const COMMIT: &str = git_version::git_version!(
     args = ["--always", "--dirty=+", "--abbrev=12", "--exclude=*"],
-    fallback = "commit unknown"
+    fallback = UNKNOWN
 );
+#[cfg(not(has_repository))]
+const COMMIT: &str = UNKNOWN;
+
+const UNKNOWN: &str = "commit unknown";
 
 /// Version, commit (with a `+` if files were changed) and target.
 fn build() -> String {

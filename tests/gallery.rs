@@ -118,7 +118,7 @@ fn bad_input_is_refused_with_a_remedy() {
     let cases: [(&[&str], &str); 3] = [
         (&["--out", "file"], "choose another with --out"),
         (&["--out", "g", "--only", "shadow-akne"], "did you mean shadow-acne?"),
-        (&["--out", "g", "--device", "gpu", "--adapter", "no such thing"], "no such thing"),
+        (&["--out", "g", "--device", "gpu", "--adapter", "no such thing"], "adapter"),
     ];
     for (arguments, part) in cases {
         let (_, message) = ends(at, 2, &[&["gallery"], arguments].concat());

@@ -122,3 +122,17 @@ fn failing_to_start_threads_is_an_error() {
     assert!(message.contains("cannot start 1024 threads") && message.contains("--threads"), "{message}");
     assert!(!message.contains("panicked") && !at.path().join("a.png").exists(), "{message}");
 }
+
+#[test]
+fn the_limit_in_force_is_named() {
+    let at = TempDir::new().unwrap();
+    for (limit, name) in [("-v", "ulimit -v"), ("-d", "ulimit -d")] {
+        let script = format!("ulimit {limit} 900000; exec \"$0\" \"$@\"");
+        let mut command = Command::new("sh");
+        command.args(["-c", &script, PROGRAM]).current_dir(at.path());
+        command.args(["--batch", "--device", "cpu", "--threads", "2", "--samples", "1", "--out", "a.exr"]);
+        let output = command.args(["--size", "16384x8192"]).output().unwrap();
+        let message = text(&output.stderr);
+        assert!(message.contains(name) && !message.contains("is free"), "{limit}: {message}");
+    }
+}

@@ -2,6 +2,11 @@
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
+#[path = "skip_common/mod.rs"]
+mod skip_common;
+
+use rustix::process::{Pid, Signal};
+use skip_common::{report_untested, skip};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -19,10 +24,7 @@ fn are_there(programs: &[&str], consequence: &str) -> bool {
     if missing.is_empty() {
         return true;
     }
-    let message = format!("{consequence}: {} is not installed", missing.join(" and "));
-    let is_required = std::env::var_os("WEEKENDER_REQUIRE_GPU").is_some_and(|value| value == "1");
-    assert!(!is_required, "{message}");
-    eprintln!("{message}");
+    skip("GPU", &format!("{consequence}: {} is not installed", missing.join(" and ")));
     false
 }
 
@@ -201,7 +203,7 @@ fn a_person_can_use_the_window() {
     display.key("g");
     log.wait_for_command("Switch CPU and GPU", 1);
     match Device::Gpu.unavailable() {
-        Some(reason) => eprintln!("the device was not switched: {reason}"),
+        Some(reason) => report_untested(&format!("the device was not switched: {reason}")),
         None => {
             assert_eq!(log.wait_for_backend("gpu", 1), (run, "gpu".to_owned()));
             let by_gpu = home.path().join("gpu.png");
@@ -357,7 +359,7 @@ fn a_killed_window_loses_little_and_a_terminated_one_nothing() {
         let mut next = display.weekender(home.path()).args(flags).args(often).spawn().unwrap();
         display.wait_for_window(&mut next);
         std::thread::sleep(Duration::from_secs(4));
-        assert!(Command::new("kill").arg(next.id().to_string()).status().unwrap().success());
+        rustix::process::kill_process(Pid::from_child(&next), Signal::TERM).unwrap();
         assert_eq!(wait_for_end(&mut next).code(), Some(143));
         let after = samples_in(&film);
         assert!(after > before, "{after} after {before}");

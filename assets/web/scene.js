@@ -4,7 +4,7 @@
 // of spheres, materials or light. What it computes itself is the camera, the samples of the next dispatch, and which
 // bytes a slider changes. Names and offsets of all bytes come with the data.
 //
-// Twins: src/prepared/camera.rs, src/app/navigation.rs, src/render_gpu/schedule.rs and trace.rs
+// Twins: src/prepared/camera.rs, src/app/model/navigation.rs, src/render_gpu/schedule.rs and trace.rs
 
 let data;
 

@@ -1,8 +1,13 @@
 //! Manual pages and completions, made from the command line's own description.
 
+use clap::builder::PossibleValuesParser;
+use clap::{Arg, Command};
 use clap_complete::{Shell, generate_to};
 use std::io;
 use std::path::Path;
+use weekender::render_cpu::Isa;
+use weekender::scene::builtin::BuiltinScene;
+use weekender::stages::Stage;
 
 /// The shells that get completions.
 pub const SHELLS: [Shell; 5] = [Shell::Bash, Shell::Zsh, Shell::Fish, Shell::PowerShell, Shell::Elvish];
@@ -18,7 +23,59 @@ pub fn write(directory: &Path) -> io::Result<()> {
     }
     clap_mangen::generate_to(weekender::cli::command(), &man)?;
     for shell in SHELLS {
-        generate_to(shell, &mut weekender::cli::command(), "weekender", &completions)?;
+        let path = generate_to(shell, &mut completed(&weekender::cli::command()), "weekender", &completions)?;
+        let text = std::fs::read_to_string(&path)?;
+        std::fs::write(&path, with_scenes(shell, text))?;
     }
     Ok(())
+}
+
+/// The command as shells complete it: without what is hidden, and with the values that its own parsers do not list.
+fn completed(command: &Command) -> Command {
+    let arguments = command.get_arguments().filter(|argument| !argument.is_hide_set()).cloned();
+    let commands = command.get_subcommands().filter(|command| !command.is_hide_set()).map(completed);
+    // clap's names live as long as the program.
+    let name: &'static str = command.get_name().to_owned().leak();
+    let about = command.get_about().cloned().unwrap_or_default();
+    Command::new(name)
+        .about(about)
+        .disable_version_flag(true)
+        .args(arguments.map(with_values))
+        .subcommands(commands)
+}
+
+fn with_values(argument: Arg) -> Arg {
+    let levels = || ["auto"].into_iter().chain(Isa::ALL.map(Isa::name));
+    match argument.get_id().as_str() {
+        "stage" | "only" => {
+            argument.value_parser(PossibleValuesParser::new(Stage::ALL.iter().map(|stage| stage.id)))
+        }
+        "isa" => argument.value_parser(PossibleValuesParser::new(levels())),
+        "simd" => argument.value_parser(["auto", "off", "4", "8", "16"]),
+        "estimate_error" => argument.value_parser(["on", "off"]),
+        _ => argument,
+    }
+}
+
+/// Adds the built-in scenes to the files that complete `--scene`, which clap cannot say.
+fn with_scenes(shell: Shell, text: String) -> String {
+    let names: Vec<&str> = BuiltinScene::ALL.iter().map(|scene| scene.name).collect();
+    match shell {
+        Shell::Bash => {
+            let files = "compgen -f \"${cur}\"";
+            let both = format!("compgen -f -W $'{}' -- \"${{cur}}\"", names.join("\\n"));
+            let mut parts = text.split("--scene)\n");
+            let first = parts.next().unwrap_or_default().to_owned();
+            parts.fold(first, |text, part| text + "--scene)\n" + &part.replacen(files, &both, 1))
+        }
+        Shell::Zsh => {
+            let both = format!(":NAME|FILE.toml:{{compadd -- {}; _files}}", names.join(" "));
+            text.replace(":NAME|FILE.toml:_files", &both)
+        }
+        Shell::Fish => {
+            let line = format!("complete -c weekender -l scene -r -F -a \"{}\"\n", names.join(" "));
+            text + &line
+        }
+        _ => text,
+    }
 }

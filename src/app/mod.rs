@@ -6,60 +6,18 @@
 //! everything: it carries out the commands and decides what to render. The tracer runs on its own thread, and the
 //! window's thread never waits for it.
 
-mod answers;
-mod autosave;
-mod bar;
-mod changes;
-mod check;
-mod code;
-mod command;
-mod controls;
+mod commands;
 mod dialogs;
-mod display;
-mod dock;
-mod facts;
 mod files;
-mod finder;
-mod first_steps;
-mod frame_log;
-mod input;
-mod inspector;
-mod kept;
-mod lanes;
-mod layers;
-mod layout;
-mod menu;
 mod model;
-mod navigation;
-mod paths;
-mod perform;
-mod pixel_values;
-mod plot;
-mod present;
-mod preview;
-mod receive;
-mod right;
-mod scene_file;
-mod second;
-mod shell;
-mod sight;
-mod spheres;
-mod stage_list;
-mod stage_panel;
-mod status;
-mod subject;
-mod texture;
-mod theme;
-mod toasts;
-mod tone;
+mod panels;
+mod toolkit;
 mod tools;
-mod tracer;
 mod tracing;
 mod viewport;
-mod widgets;
 mod window;
 
-pub use command::{Command, MENUS, ROWS};
+pub use commands::{Command, MENUS, ROWS};
 pub use eframe::egui::ThemePreference as Theme;
 pub use model::{Device, Dock, Document, Origin, Remembered, Show, Sizing, Source, Tab};
 pub use window::Window;
@@ -174,7 +132,7 @@ fn native_options(renderer: eframe::Renderer) -> eframe::NativeOptions {
             .with_inner_size([1280.0, 800.0])
             .with_clamp_size_to_monitor_size(true)
             .with_min_inner_size([480.0, 320.0])
-            .with_icon(theme::icon())
+            .with_icon(toolkit::theme::icon())
             .with_drag_and_drop(true),
         renderer,
         dithering: false,
@@ -196,7 +154,7 @@ fn display() -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::facts::Facts;
+    use super::commands::Snapshot;
     use super::*;
     use crate::cli::{Request, parse};
     use egui_kittest::{Harness, HarnessBuilder};
@@ -213,14 +171,14 @@ mod tests {
         }
     }
 
-    /// What the window of a command line knows before its first frame.
-    pub(super) fn facts_of(words: &str) -> Facts {
-        window(&format!("weekender {words} --device cpu")).facts()
+    /// A snapshot of the window of a command line before its first frame.
+    pub(super) fn snapshot_of(words: &str) -> Snapshot {
+        window(&format!("weekender {words} --device cpu")).snapshot()
     }
 
     /// What draws a part of the window with the window's own style, which is dark.
     pub(super) fn dressed<State>(size: [f32; 2]) -> HarnessBuilder<State> {
-        Harness::<State>::builder().with_size(size).with_context_setup(theme::install)
+        Harness::<State>::builder().with_size(size).with_context_setup(toolkit::theme::install)
     }
 
     #[test]

@@ -19,7 +19,7 @@ use std::sync::{Mutex, PoisonError};
 /// The files of a render. No other run may write its films.
 pub(super) struct Files {
     pub render: BatchOptions,
-    /// That of `--checkpoint` first, if there is one.
+    /// The optional film of `--checkpoint` comes first.
     films: Vec<(PathBuf, Mutex<LockedFilm>)>,
     /// Samples per pixel of the film that the render continues.
     pub held_before: u64,
@@ -34,7 +34,7 @@ pub(super) struct Written {
     /// Notes on the files, for the user.
     pub notes: Vec<String>,
     pub failures: Vec<String>,
-    /// The error of the denoised picture, if there is one.
+    /// The error of the denoised picture.
     pub denoised: Option<DenoisedError>,
 }
 

@@ -33,12 +33,12 @@ pub fn run(options: &InfoOptions) -> Result<ExitCode, Failure> {
     printed.map(|()| ExitCode::SUCCESS).map_err(Failure::Run)
 }
 
-/// What a file says about itself.
+/// The metadata of a file.
 struct Info {
     json: Value,
     /// The estimated error of a picture, or why a film has none.
     error: Option<String>,
-    /// Why a picture that was a film is none any more.
+    /// Reason why a picture is no longer a film.
     note: Option<String>,
 }
 

@@ -38,7 +38,7 @@ impl Keeper {
         Keeper { files, last: Instant::now(), asked, pending: None, kept: None }
     }
 
-    /// Starts a write if it is time. Returns a warning about the last one, if there is one.
+    /// Starts a write if it is time. Returns a warning if the last one failed.
     pub fn look(&mut self, progressive: &Progressive, status: &Status) -> Option<String> {
         let warning = match self.pending.as_ref().map(Receiver::try_recv) {
             Some(Err(TryRecvError::Empty)) => return None,
@@ -56,7 +56,7 @@ impl Keeper {
             progressive.inspect(move |film| {
                 let (own, of_copy, answer) = (Arc::clone(&files), status.clone(), sender.clone());
                 let is_spawned = film.try_copy().is_ok_and(|copy| {
-                    // Nobody receives the outcome if the render is already over.
+                    // The render may be over, and the outcome unread.
                     let write = move || drop(answer.send(write(&own, &copy, &of_copy)));
                     Builder::new().name("keep".to_owned()).spawn(write).is_ok()
                 });
@@ -68,7 +68,7 @@ impl Keeper {
         warning
     }
 
-    /// Waits until the current checkpoint is written. Returns the samples per pixel in the file, if there is one.
+    /// Waits until the current checkpoint is written. Returns the samples per pixel in the file.
     pub fn finish(mut self) -> Option<u64> {
         if let Some(Ok(outcome)) = self.pending.take().map(|pending| pending.recv()) {
             self.note(outcome);

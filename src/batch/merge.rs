@@ -125,7 +125,7 @@ fn empty_sum(plan: &Plan) -> anyhow::Result<FilmSum> {
 /// Adds what exists of a part.
 ///
 /// # Errors
-/// What the part lacks, or why its film was not added.
+/// The samples that the part lacks, or why its film was not added.
 fn add(sum: &mut FilmSum, plan: &Plan, part: &Part) -> Result<(), String> {
     let (Part { file, samples: [start, end] }, path) = (part, plan.beside(&part.file));
     if path.symlink_metadata().is_err() {

@@ -80,7 +80,7 @@ fn summary_of_whole<'a>(render: &'a BatchOptions, found: &SavedFilm) -> Summary<
     Summary { render, samples, status, denoised: None, files, writing: Duration::ZERO }
 }
 
-/// The part's film, if there is one to continue. A damaged one is moved aside.
+/// The part's film to continue, or `None`. A damaged film is moved aside.
 fn find(path: &Path, plan: &Plan, part: &Part) -> Result<Option<SavedFilm>, Failure> {
     if path.symlink_metadata().is_err() {
         return Ok(None);

@@ -44,7 +44,7 @@ pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What was divided.
+/// The divided picture.
 fn about(Plan { path, manifest, recipe, job }: &Plan) -> String {
     let settings = job.settings();
     let lengths = manifest.parts.iter().map(|part| part.samples[1] - part.samples[0]);

@@ -38,7 +38,7 @@ impl<'a> Studio<'a> {
         Ok(Studio { backend, renderer, progressive, interrupt })
     }
 
-    /// A plan for this many samples per pixel, in passes for a render that nobody watches.
+    /// A plan for this many samples per pixel, in passes for an unattended render.
     pub fn plan(samples: u64) -> Plan {
         Plan { pass_target: Plan::BATCH_PASS, ..Plan::until(Stop::at_samples(samples)) }
     }

@@ -45,7 +45,7 @@ pub struct BenchOptions {
           default_value_if("quick", "true", "3"))]
     pub runs: usize,
     /// Approximate time limit of a run in seconds; slow rows take fewer samples [default: 10, or 1 with --quick; with
-    /// --features .4 and .1]
+    /// --features 0.4 and 0.1]
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     run_limit: Option<f64>,
     /// Fewer samples and runs, for a first impression within a minute
@@ -84,7 +84,7 @@ impl BenchOptions {
     /// # Errors
     /// If not.
     pub fn check(&self) -> Result<()> {
-        let inputs = self.scene.iter().filter_map(|scene| sources::scene_file(Some(scene)));
+        let inputs = self.scene.iter().filter_map(|scene| sources::scene_file(Some(scene.as_ref())));
         check_outputs(inputs, self.json.as_deref())
     }
 

@@ -112,8 +112,9 @@ pub struct CompareOptions {
     #[arg(value_name = "SECOND")]
     pub second: PathBuf,
     /// Meaning of integer values in pictures of other programs: square root as in the book, linear, or sRGB
-    #[arg(long, value_enum, default_value = "gamma2")]
-    pub encoding: Encoding,
+    /// [default: what a PNG says, otherwise gamma2]
+    #[arg(long, value_enum)]
+    pub encoding: Option<Encoding>,
     /// Write the figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-")]
     pub json: Option<PathBuf>,
@@ -145,7 +146,7 @@ pub struct StressOptions {
     #[arg(long, value_name = "LEVEL,...", value_parser = parse_levels, default_value = "auto")]
     isa: Auto<Vec<Isa>>,
     /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter [default: the
-    /// best one, if there is one]
+    /// best available]
     #[arg(long, value_name = "SUBSTRING")]
     pub adapter: Option<String>,
     /// Write all figures as JSON; - for standard output

@@ -30,13 +30,13 @@ use crate::job::recipe::Recipe;
 use crate::system::failure::{EXIT_CODES, Failure};
 use crate::system::shell::Shell;
 use anyhow::Result;
-use clap::error::{ContextKind, ContextValue};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::parser::ValueSource;
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-/// What the program should do.
+/// The action that the command line requests.
 #[derive(Debug)]
 pub enum Request {
     /// Print the version.
@@ -54,7 +54,7 @@ pub enum Request {
 /// The path tracer of "Ray Tracing in One Weekend", as a viewer and a headless renderer.
 #[derive(Debug, Parser)]
 #[command(name = "weekender", version, disable_version_flag = true, args_conflicts_with_subcommands = true,
-          after_help = EXIT_CODES)]
+          override_usage = "weekender [OPTIONS] [FILE]\n       weekender <COMMAND> [OPTIONS]", after_help = EXIT_CODES)]
 struct Raw {
     /// Print the version, commit and target
     #[arg(short = 'V', long = "version", id = "version")]
@@ -91,13 +91,13 @@ pub enum Command {
     /// Given a plan, it adds up whatever exists, checkpoints of unfinished parts included. The exit code is 0 if nothing is
     /// missing, 1 if a part is missing, unfinished or damaged, and 2 if nothing could be merged.
     Merge(Box<MergeOptions>),
-    /// Say what a film, picture, scene file or plan says about itself
+    /// Show the metadata of a film, picture, scene file or plan
     Info(InfoOptions),
     /// Show a path as two backends trace it, side by side, and where the paths part
     ///
     /// The exit code is 0 if the two agree, 1 if they differ and 2 if they could not be compared.
     Diff(Box<DiffOptions>),
-    /// Tell whether two pictures are equal apart from noise, and where they are not
+    /// Tell whether two pictures are equal apart from noise, and where they differ
     ///
     /// The exit code is 0 if they are equal, 1 if they differ and 2 if they could not be compared.
     Compare(Box<CompareOptions>),
@@ -106,8 +106,8 @@ pub enum Command {
     /// Render stiff and extreme scenes and check the results, compared with the book's own arithmetic
     ///
     /// Each scene is rendered as it is and with 40 distant spheres, which switch the hierarchy on: by a CPU level that
-    /// fuses multiply and add, by one that does not, in f64, and by the GPU, if there is one. The exit code is 0 if all
-    /// are right, 1 if one is not and 2 if nothing could be run.
+    /// fuses multiply and add, by one that does not, in f64, and by the GPU if available. The exit code is 0 if all
+    /// are right, 1 if one is wrong and 2 if nothing could be run.
     Stress(Box<StressOptions>),
     /// Write the companion: a web page that goes through the book in pictures, in code and live
     ///
@@ -138,7 +138,7 @@ pub fn command() -> clap::Command {
 /// The file of `--log`, needed before the flags are validated. `None` if clap does not accept the command line;
 /// [`parse`] then says what is wrong.
 pub fn log_file(arguments: impl IntoIterator<Item = OsString>) -> Option<PathBuf> {
-    command().try_get_matches_from(arguments).ok()?.get_one::<PathBuf>("log").cloned()
+    matches(arguments).ok()?.get_one::<PathBuf>("log").cloned()
 }
 
 /// Parses the command line; the first argument is the program's name.
@@ -146,8 +146,7 @@ pub fn log_file(arguments: impl IntoIterator<Item = OsString>) -> Option<PathBuf
 /// # Errors
 /// [`Failure::CommandLine`] or [`Failure::Input`]; nothing has been written in either case.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, Failure> {
-    let matches =
-        command().try_get_matches_from(arguments).map_err(|error| Failure::CommandLine(hinted(error)))?;
+    let matches = matches(arguments).map_err(|error| Failure::CommandLine(hinted(error)))?;
     if matches.get_flag("version") {
         return Ok(Request::Version);
     }
@@ -161,6 +160,24 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
         options.flags = words(own, &[&backend::FLAGS[..], &["every"]].concat());
     }
     Ok(Request::Command(command))
+}
+
+/// The arguments as clap reads them. A file in the place of a command, as file managers give it, is opened in the window.
+fn matches(arguments: impl IntoIterator<Item = OsString>) -> Result<ArgMatches, clap::Error> {
+    let mut arguments: Vec<OsString> = arguments.into_iter().collect();
+    let error = match command().try_get_matches_from(&arguments) {
+        Err(error) if error.kind() == ErrorKind::InvalidSubcommand => error,
+        outcome => return outcome,
+    };
+    // A word that is not UTF-8 is shown with replacements.
+    let unknown = error.get(ContextKind::InvalidSubcommand).map(ToString::to_string);
+    let is_file = |word: &OsString| {
+        let path = Path::new(word);
+        Some(word.to_string_lossy().into_owned()) == unknown && (path.extension().is_some() || path.is_file())
+    };
+    let Some(place) = arguments.iter().skip(1).position(is_file) else { return Err(error) };
+    arguments.insert(place + 1, "--open".into());
+    command().try_get_matches_from(arguments)
 }
 
 /// Adds a tip if the value of a flag has a decimal comma.
@@ -206,17 +223,19 @@ pub fn command_line() -> String {
 /// their authors are private.
 fn recorded(arguments: impl Iterator<Item = OsString>) -> String {
     let shortened = |word: OsString| {
-        let word = word.to_string_lossy();
-        let (flag, value) = word.split_once('=').filter(|_| word.starts_with("--")).unwrap_or(("", &word));
+        let (flag, value) = match word.to_str().and_then(|word| word.split_once('=')) {
+            Some((flag, value)) if flag.starts_with("--") => (flag, OsStr::new(value)),
+            _ => ("", word.as_os_str()),
+        };
         let path = Path::new(value);
         let is_in_directory = path.parent().is_some_and(|at| !at.as_os_str().is_empty() && at.is_dir());
         match path.file_name().filter(|_| path.has_root() || is_in_directory) {
-            Some(name) if flag.is_empty() => name.to_string_lossy().into_owned(),
-            Some(name) => format!("{flag}={}", name.to_string_lossy()),
-            None => word.into_owned(),
+            Some(name) if flag.is_empty() => name.to_owned(),
+            Some(name) => [OsStr::new(flag), "=".as_ref(), name].into_iter().collect(),
+            None => word,
         }
     };
-    Shell::HERE.line(std::iter::once("weekender".to_owned()).chain(arguments.skip(1).map(shortened)))
+    Shell::HERE.line(std::iter::once("weekender".into()).chain(arguments.skip(1).map(shortened)))
 }
 
 #[cfg(test)]

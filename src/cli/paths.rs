@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// Refuses an output that would replace an input or another output. Devices may be shared.
 ///
 /// # Errors
-/// The first such output.
+/// For the first such output.
 pub fn check_paths<'a>(
     inputs: impl IntoIterator<Item = &'a Path>,
     outputs: impl IntoIterator<Item = &'a Path>,
@@ -27,7 +27,7 @@ pub fn check_paths<'a>(
 /// As [`check_paths`], and checks that each output can be written.
 ///
 /// # Errors
-/// The first output of which that is not so.
+/// For the first output that cannot be written or would replace an input or another output.
 pub fn check_outputs<'a>(
     inputs: impl IntoIterator<Item = &'a Path>,
     outputs: impl IntoIterator<Item = &'a Path> + Clone,

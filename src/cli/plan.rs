@@ -28,7 +28,7 @@ pub struct PlanOptions {
     /// Interval at which a part's film is written, as for rendering: 0.1s to 30d [default: 60s]
     #[arg(long, value_name = "DURATION", value_parser = parse_duration)]
     every: Option<Duration>,
-    /// What is made: the commands, one per line, or files that give the parts to Slurm, GNU parallel or make
+    /// Output: the commands, one per line, or files that hand the parts to Slurm, GNU parallel or make
     #[arg(long, value_enum, default_value = "text")]
     pub format: Format,
     /// How the commands call this program [default: as it was called, with its directory if that was given]

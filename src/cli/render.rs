@@ -7,6 +7,7 @@ use super::values::{
 };
 use super::{Request, backend, is_given};
 use crate::backends::BackendChoice;
+use crate::film::checkpoint;
 use crate::job::output::OutputFormat;
 use crate::job::recipe::{Recipe, plain_name};
 use crate::job::render::RenderJob;
@@ -27,19 +28,22 @@ pub(super) struct RenderFlags {
     /// List scenes, stages and devices
     #[arg(long)]
     pub list: bool,
-    /// What draws the window; auto: wgpu, or gl if there is no hardware adapter
+    /// How to draw the window; auto: wgpu, or gl without a hardware adapter
     #[arg(long, value_enum, default_value = "auto", conflicts_with = "batch")]
     pub draw_with: DrawWith,
+    /// Open this film, picture or scene file in the window; FILE without a flag does the same
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["batch", "list", "scene", "stage", "resume", "AnimationFlags"])]
+    pub open: Option<PathBuf>,
     /// Open the window with its usual first picture instead of what was shown last
     #[arg(long, conflicts_with = "batch")]
     pub fresh: bool,
-    /// After how much tracing the window saves the film by itself, and how often, 0.1s to 30d
+    /// Autosave interval of the window, 0.1s to 30d of tracing
     #[arg(long, value_name = "DURATION", value_parser = parse_duration, default_value = "60s", hide = true)]
     pub autosave_every: Duration,
     /// Write the times of the window's frames to a file
     #[arg(long, value_name = "FILE", hide = true)]
     pub frame_log: Option<PathBuf>,
-    /// Let the program panic once the film has this many samples per pixel (fault injection)
+    /// Panic once the film has this many samples per pixel (fault injection)
     #[arg(long, value_name = "SAMPLES", hide = true, conflicts_with = "AnimationFlags")]
     pub simulate_crash: Option<u64>,
     /// Show progress on standard error; auto: if it is a terminal
@@ -77,7 +81,7 @@ pub(super) struct FileFlags {
     /// directory or a pattern such as turn-####.png [default: SCENE.png]
     #[arg(long, value_name = "FILE", requires = "batch")]
     pub out: Option<PathBuf>,
-    /// The format of --out, if its name does not tell it
+    /// The format of --out if its name does not tell it
     #[arg(long, value_enum, requires = "out", conflicts_with = "AnimationFlags")]
     format: Option<OutputFormat>,
     /// Write the denoised picture, with an estimate of its error; the film of a .exr gets it as a layer and stays as it
@@ -125,15 +129,15 @@ pub struct WindowOptions {
     pub backend: BackendChoice,
     /// Whether flags chose the backend.
     pub is_device_given: bool,
-    /// When to stop, if given.
+    /// When to stop; `None` without such flags.
     pub stop: Option<Stop>,
     /// The film to resume.
     pub resume: Option<PathBuf>,
     /// Whether to open the usual first picture instead of the last one.
     pub is_fresh: bool,
-    /// Tracing time after which the film is saved, and again each time.
+    /// Tracing time between autosaves.
     pub autosave_every: Duration,
-    /// The directory in which the window saves its film by itself; without one, it doesn't.
+    /// The directory for autosaves; `None` disables them.
     pub state_directory: Option<PathBuf>,
     pub draw_with: DrawWith,
     /// File for the times of the window's frames.
@@ -178,31 +182,44 @@ pub(super) fn request(mut flags: RenderFlags, matches: &ArgMatches) -> Result<Re
     if flags.animation.is_given() {
         return Ok(Request::Frames(Box::new(animation::frames(flags)?)));
     }
+    let mut picture = None;
+    match flags.open.take() {
+        Some(path) if is_scene_file(&path) => flags.picture.scene = Some(path.into()),
+        Some(path) if checkpoint::read_head(&path).is_ok() => flags.files.resume = Some(path),
+        other => picture = other,
+    }
     let files = &mut flags.files;
     if files.go_on && files.checkpoint.as_ref().is_some_and(|film| film.exists()) {
         files.resume.clone_from(&files.checkpoint);
     }
     match (flags.batch, &flags.files.save_scene) {
-        (false, None) => Ok(Request::Window(Box::new(window(flags, matches)?))),
+        (false, None) => Ok(Request::Window(Box::new(window(flags, picture.as_deref(), matches)?))),
         (false, Some(path)) => {
             check_paths(&flags, None)?;
-            let (chosen, _) =
-                sources::picture(&flags.picture, &flags.samples, flags.files.resume.as_deref())?;
+            let saved = flags.files.resume.as_deref().or(picture.as_deref());
+            let (chosen, _) = sources::picture(&flags.picture, &flags.samples, saved)?;
             Ok(Request::SaveScene(Box::new(chosen.recipe), path.clone()))
         }
         (true, _) => Ok(Request::Batch(Box::new(batch(flags)?))),
     }
 }
 
-fn window(flags: RenderFlags, matches: &ArgMatches) -> Result<WindowOptions> {
+/// Whether a file is a scene rather than a picture, which only its name tells.
+fn is_scene_file(path: &Path) -> bool {
+    path == Path::new(STANDARD) || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"))
+}
+
+/// `opened` is a picture without a film.
+fn window(flags: RenderFlags, opened: Option<&Path>, matches: &ArgMatches) -> Result<WindowOptions> {
     let RenderFlags { picture, samples, stop, files, .. } = &flags;
+    let saved = files.resume.as_deref().or(opened);
     ensure!(
         samples.sample_range.is_none(),
         "--sample-range needs --batch: the window renders all samples of its picture"
     );
     let file = sources::scene_file(picture.scene.as_deref());
-    let unchanged = sources::find(picture, files.resume.as_deref())?.recipe;
-    let (ChosenRecipe { recipe, stage }, job) = sources::picture(picture, samples, files.resume.as_deref())?;
+    let unchanged = sources::find(picture, saved)?.recipe;
+    let (ChosenRecipe { recipe, stage }, job) = sources::picture(picture, samples, saved)?;
     if let Some(film) = &files.resume {
         saved::check_resume(film, &job)?;
     }
@@ -214,7 +231,7 @@ fn window(flags: RenderFlags, matches: &ArgMatches) -> Result<WindowOptions> {
         stage,
         file: file.map(PathBuf::from),
         is_size_given: picture.size.is_some(),
-        is_picture_given: picture.is_given() || files.resume.is_some() || samples.estimate_error.is_some(),
+        is_picture_given: picture.is_given() || saved.is_some() || samples.estimate_error.is_some(),
         is_device_given: backend::FLAGS.into_iter().any(|flag| is_given(matches, flag)),
         resume: files.resume.clone(),
         is_fresh: flags.fresh,

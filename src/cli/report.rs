@@ -25,7 +25,7 @@ pub struct ReportOptions {
     )]
     scenes: Vec<String>,
     /// Backends: cpu (the widest packets), scalar (one lane), portable, reference (f64), gpu,
-    /// c89 (the plain C program) [default: cpu,scalar, gpu if there is one, c89 if there is a C compiler]
+    /// c89 (the plain C program) [default: cpu,scalar, gpu if available, c89 with a C compiler]
     #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
     backends: Vec<String>,
     /// Samplers

@@ -11,19 +11,20 @@ use anyhow::Result;
 use clap::builder::BoolishValueParser;
 use clap::{Args, ValueHint};
 use glam::DVec3;
+use std::ffi::{OsStr, OsString};
 use std::ops::Range;
 use std::path::Path;
 
-/// The scene that is rendered if none is named.
+/// The default scene.
 const DEFAULT_SCENE: &str = "three-spheres";
 
-/// What is rendered.
+/// Flags that choose and change the picture.
 #[derive(Debug, Default, PartialEq, Args)]
 #[command(next_help_heading = "Picture")]
 pub(super) struct PictureFlags {
     /// A built-in scene, field:N for a field of N spheres, or a scene file [default: three-spheres]
     #[arg(long, value_name = "NAME|FILE.toml", value_hint = ValueHint::FilePath, conflicts_with = "stage")]
-    pub scene: Option<String>,
+    pub scene: Option<OsString>,
     /// A stage of the book; --list shows them
     #[arg(long, value_name = "ID")]
     pub stage: Option<String>,
@@ -118,14 +119,14 @@ pub(super) struct ChosenRecipe {
     pub stage: Option<&'static Stage>,
 }
 
-/// The picture that the flags describe, and its validated job. Without --scene and --stage it comes from the film to
-/// `resume`.
+/// The picture that the flags describe, and its validated job. Without --scene and --stage it comes from the film or
+/// picture `saved`.
 pub(super) fn picture(
     flags: &PictureFlags,
     samples: &SampleFlags,
-    resume: Option<&Path>,
+    saved: Option<&Path>,
 ) -> Result<(ChosenRecipe, RenderJob)> {
-    let mut chosen = find(flags, resume)?;
+    let mut chosen = find(flags, saved)?;
     flags.change(&mut chosen.recipe, samples.estimate_error);
     chosen.recipe.samples_per_pixel = samples.samples.unwrap_or(chosen.recipe.samples_per_pixel);
     let job = chosen.recipe.job()?;
@@ -133,15 +134,15 @@ pub(super) fn picture(
 }
 
 /// The source that the flags name, before the changes of other flags.
-pub(super) fn find(flags: &PictureFlags, resume: Option<&Path>) -> Result<ChosenRecipe> {
-    match (&flags.stage, &flags.scene, resume) {
+pub(super) fn find(flags: &PictureFlags, saved: Option<&Path>) -> Result<ChosenRecipe> {
+    match (&flags.stage, &flags.scene, saved) {
         (Some(id), _, _) => {
             let stage = Stage::find(id)?;
             Ok(ChosenRecipe { recipe: stage.recipe(), stage: Some(stage) })
         }
         (None, Some(name), _) => Ok(ChosenRecipe { recipe: scene(name)?, stage: None }),
-        (None, None, Some(film)) => {
-            let saved = Saved::describe(film)?;
+        (None, None, Some(path)) => {
+            let saved = Saved::describe(path)?;
             Ok(ChosenRecipe { recipe: saved.recipe()?, stage: saved.stage() })
         }
         (None, None, None) => Ok(ChosenRecipe { recipe: scene(DEFAULT_SCENE)?, stage: None }),
@@ -149,17 +150,18 @@ pub(super) fn find(flags: &PictureFlags, resume: Option<&Path>) -> Result<Chosen
 }
 
 /// The scene with this name or in this file.
-pub(super) fn scene(name: &str) -> Result<Recipe> {
-    match scene_file(Some(name)) {
+pub(super) fn scene(name: impl AsRef<OsStr>) -> Result<Recipe> {
+    match scene_file(Some(name.as_ref())) {
         Some(path) => Ok(file::load(path)?),
-        None => Recipe::find(name),
+        None => Recipe::find(&name.as_ref().to_string_lossy()),
     }
 }
 
 /// The scene file that `--scene` names, if it is one: standard input, or a name with an extension or a directory.
-pub(super) fn scene_file(scene: Option<&str>) -> Option<&Path> {
+pub(super) fn scene_file(scene: Option<&OsStr>) -> Option<&Path> {
     let path = Path::new(scene?);
-    (scene == Some(STANDARD) || path.extension().is_some() || path.components().count() > 1).then_some(path)
+    (path == Path::new(STANDARD) || path.extension().is_some() || path.components().count() > 1)
+        .then_some(path)
 }
 
 /// Makes a picture `width` pixels wide, keeping its shape.

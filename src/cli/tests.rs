@@ -139,3 +139,56 @@ fn diff_takes_sides_and_place_from_flags() {
     assert_eq!(pixel("--pixel 19,9"), Ok([19, 9]));
     assert!(pixel("--pixel 20,9").unwrap_err().contains("the last one is 19,9"));
 }
+
+#[test]
+fn a_file_alone_is_opened_in_the_window() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    let recipe = Recipe { samples_per_pixel: 7, ..Recipe::builtin("three-spheres").unwrap() };
+    let toml = crate::job::recipe::file::to_toml(&recipe);
+    let mut film = recipe.job().unwrap().new_film();
+    film.record(0..2, 0).unwrap();
+    let description = crate::film::Description::new(&toml);
+    for name in ["film.exr", "a picture.png"] {
+        crate::job::output::write_image(&at(name), &film, recipe.rules.transfer, &description).unwrap();
+    }
+    std::fs::write(at("scene.toml"), &toml).unwrap();
+    let opened = |words: &[&OsStr]| -> Result<WindowOptions, String> {
+        let words = std::iter::once(OsStr::new("weekender")).chain(words.iter().copied());
+        match parse(words.map(OsStr::to_owned)).map_err(|failure| failure.to_string())? {
+            Request::Window(options) => Ok(*options),
+            other => panic!("{other:?}"),
+        }
+    };
+    for name in ["film.exr", "a picture.png", "scene.toml"] {
+        let path = at(name);
+        for words in [
+            &[path.as_os_str()][..],
+            &["--fresh".as_ref(), path.as_ref()],
+            &["--open".as_ref(), path.as_ref()],
+        ] {
+            let options = opened(words).unwrap();
+            assert!(options.is_picture_given && options.recipe.samples_per_pixel == 7, "{name}");
+            assert_eq!(options.resume.is_some(), name == "film.exr", "{name}");
+            assert_eq!(options.file.is_some(), name == "scene.toml", "{name}");
+        }
+        let error = opened(&[path.as_ref(), "--stage".as_ref(), "sky".as_ref()]).unwrap_err();
+        assert!(error.contains("--stage"), "{error}");
+    }
+    let error = opened(&["chekc".as_ref()]).unwrap_err();
+    assert!(error.contains("unrecognized") && error.contains("check"), "{error}");
+    let error = opened(&["missing.exr".as_ref()]).unwrap_err();
+    assert!(error.contains("cannot read missing.exr"), "{error}");
+}
+
+#[cfg(unix)]
+#[test]
+fn names_that_are_not_utf_8_are_recorded_and_read() {
+    use std::os::unix::ffi::OsStrExt;
+    let name = |bytes: &'static [u8]| OsStr::from_bytes(bytes).to_owned();
+    let line = recorded(["weekender".into(), "--scene".into(), name(b"/x/K\xf6ln.toml")].into_iter());
+    assert_eq!(line, "weekender --scene $'K\\xf6ln.toml'");
+    let words = ["weekender".into(), "--scene".into(), name(b"no-such-K\xf6ln.toml")];
+    let error = parse(words).unwrap_err().to_string();
+    assert!(error.contains("cannot read no-such-K"), "{error}");
+}

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
 
-/// What draws the window; independent of what traces.
+/// How the window is drawn; independent of the tracer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, clap::ValueEnum)]
 pub enum DrawWith {
     /// Whatever is faster on this machine
@@ -65,7 +65,7 @@ pub(super) fn parse_isa(text: &str) -> Result<Auto<Isa>, String> {
 
 fn parse_level(name: &str) -> Result<Isa, String> {
     Isa::ALL.into_iter().find(|isa| isa.name() == name).ok_or_else(|| {
-        format!("{name:?} is no level: choose auto or among {}", Isa::ALL.map(Isa::name).join(", "))
+        format!("unknown level {name:?}: choose auto or among {}", Isa::ALL.map(Isa::name).join(", "))
     })
 }
 
@@ -154,7 +154,7 @@ pub(super) fn parse_duration(text: &str) -> Result<Duration, String> {
         .ok_or_else(|| "must be from 0.1s to 30d, with s, m, h or d after the number, such as 90s".to_owned())
 }
 
-/// A parser of ranges that end at `limit` at most, of which `example` is one.
+/// A parser of ranges that end at `limit` at most; messages show `example`.
 pub(super) fn range<T>(
     limit: T,
     example: &'static str,
@@ -173,7 +173,7 @@ where
 /// The backend of this name, one of [`BackendChoice::NAMES`].
 pub(super) fn backend_named(name: &str, adapter: Option<&str>) -> Result<BackendChoice> {
     BackendChoice::named(name, adapter).with_context(|| {
-        format!("there is no backend {name:?}; choose among {}", BackendChoice::NAMES.join(", "))
+        format!("unknown backend {name:?}; choose among {}", BackendChoice::NAMES.join(", "))
     })
 }
 

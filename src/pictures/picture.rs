@@ -5,6 +5,7 @@ use crate::film::{Film, key};
 use crate::job::output::{Encoding, Linear, Values, read_picture};
 use crate::job::recipe::Recipe;
 use crate::job::saved::{OpenError, Saved};
+use crate::stages::Transfer;
 use crate::system::memory;
 use anyhow::Result;
 use std::path::Path;
@@ -30,8 +31,9 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Reads a file, or a layer of one (`FILE:LAYER`). `encoding` applies to integer pictures without a description.
-    pub fn read(path: &Path, encoding: Encoding) -> Result<Self> {
+    /// Reads a file, or a layer of one (`FILE:LAYER`). `encoding` applies to integer pictures without a description;
+    /// if it is `None`, what a PNG says does, or else the book's square root.
+    pub fn read(path: &Path, encoding: Option<Encoding>) -> Result<Self> {
         let name = path.display().to_string();
         let (path, layer) = match name.rsplit_once(':') {
             Some((file, layer)) if !path.exists() && Path::new(file).exists() => {
@@ -54,8 +56,16 @@ impl Picture {
         if let Some(film) = saved.and_then(|saved| saved.film) {
             return Picture::of_rendered(name, recipe.as_ref(), film.into());
         }
-        let encoding = recipe.as_ref().map_or(encoding, |recipe| Encoding::Book(recipe.rules.transfer));
         let read = read_picture(path, layer)?;
+        let described = recipe.as_ref().map(|recipe| Encoding::Book(recipe.rules.transfer));
+        let is_stated = described.or(encoding).is_none() && read.stated.is_some();
+        let encoding = described.or(encoding).or(read.stated).unwrap_or(Encoding::Book(Transfer::Gamma2));
+        let stated = is_stated.then(|| {
+            format!(
+                "it says that its values are {}; if they are square roots as in the book, add --encoding gamma2",
+                encoding.name()
+            )
+        });
         let kind = match &read.values {
             Values::Integers { .. } => "integers",
             Values::Floats { halves, .. } if halves.contains(&true) => "16-bit floats",
@@ -76,7 +86,7 @@ impl Picture {
             pixels,
             steps,
             limit,
-            notes: damages.chain(read.notes).chain(bias).collect(),
+            notes: damages.chain(read.notes).chain(stated).chain(bias).collect(),
             film: None,
         })
     }

@@ -1,20 +1,20 @@
 //! A bounding volume hierarchy over many spheres.
 //!
-//! obvhs builds the tree. This module lays it out for the kernels and widens its boxes, so that rounding never hides a
-//! hit that testing every sphere would find.
+//! obvhs builds the trees of its regions. This module joins and lays them out for the kernels and widens their boxes, so
+//! that rounding never hides a hit that testing every sphere would find.
 
 use super::bounded::Bounded;
-use super::parted;
+use super::regions::{Forest, Method};
+use super::wide_bvh::WideBvh;
 use crate::kernel::{Node, Real, STACK_SIZE};
 use crate::scene::Sphere;
 use glam::DVec3;
 use obvhs::BvhBuildParams;
+use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::builder::build_bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 use std::ops::RangeInclusive;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::sync::atomic::AtomicBool;
 
 /// Most levels of a tree, limited by the traversal's stack.
 pub const DEPTH_LIMIT: usize = STACK_SIZE;
@@ -52,86 +52,123 @@ const IMPROVABLE: RangeInclusive<usize> = 20_001..=4_000_000;
 /// How long a build may take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effort {
-    /// Up to some .1 s on one core, and 1 µs per sphere: for a picture that someone waits for.
+    /// About 0.1 s or less on one core, and at most 1 µs per sphere: for a picture that someone waits for.
     Quick,
-    /// As long as the best tree takes: up to 20 times as long.
+    /// As long as the best tree takes: up to 20 times as long, on one core.
     Thorough,
 }
 
-/// The nodes, root first, and the order of the spheres.
+/// The nodes, and the order of the spheres.
 #[derive(Clone, Debug)]
 pub struct Hierarchy<R> {
+    /// The nodes for the CPU, root first. Empty in a hierarchy for the GPU.
     pub nodes: Vec<Node<R>>,
+    /// The nodes for the GPU; `None` in a hierarchy for the CPU.
+    pub wide: Option<WideBvh>,
     /// Largest absolute coordinate of any box, which bounds the rounding error.
     pub extent: R,
     /// Each sphere's place in the list, in leaf order. At equal distance, the first in the list is hit.
     pub ranks: Vec<u32>,
 }
 
+/// A region's tree, its spheres' places in the list in leaf order, and its number of levels.
+struct Region {
+    nodes: Vec<Bvh2Node>,
+    ranks: Vec<u32>,
+    depth: usize,
+}
+
 impl<R: Real> Hierarchy<R> {
     /// Builds the hierarchy over at least one sphere, with coordinates relative to `origin`.
     pub fn build<'a>(spheres: impl IntoIterator<Item = &'a Sphere>, origin: DVec3, effort: Effort) -> Self {
+        #[expect(clippy::expect_used, reason = "nothing cancels it")]
         Hierarchy::build_unless(&AtomicBool::new(false), spheres, origin, effort)
+            .expect("it is not cancelled")
     }
 
-    /// Like [`Hierarchy::build`], but once `cancel` is set it hurries, and the hierarchy is poor.
+    /// As [`Hierarchy::build`]. Returns `None` soon after `cancel` is set.
     pub fn build_unless<'a>(
         cancel: &AtomicBool,
         spheres: impl IntoIterator<Item = &'a Sphere>,
         origin: DVec3,
         effort: Effort,
-    ) -> Self {
-        let fits = |tree: &Bvh2| depth(&tree.nodes) <= DEPTH_LIMIT;
+    ) -> Option<Self> {
         let spheres = Bounded::all(spheres, &origin);
-        let tree = build_tree(&spheres, Leaves::of(spheres.len()), effort, in_walking_order, fits, cancel);
-        let corner = |v: glam::Vec3A| v.to_array().map(|x| R::from_f64(f64::from(x)));
-        let mut extent = 0.0_f32;
-        let nodes = tree
-            .nodes
-            .iter()
-            .map(|node| {
-                let aabb = node.aabb();
-                extent = extent.max(aabb.min.abs().max_element()).max(aabb.max.abs().max_element());
-                let axis =
-                    if node.is_leaf() { 0 } else { parting_axis(&tree.nodes, node.first_index as usize) };
-                Node {
-                    low: corner(aabb.min),
-                    first: node.first_index,
-                    high: corner(aabb.max),
-                    count: node.prim_count | axis,
-                }
-            })
-            .collect();
-        Hierarchy { nodes, extent: R::from_f64(f64::from(extent)), ranks: tree.primitive_indices }
+        let region = |tree: Bvh2, _: &[Aabb], places: &[u32]| {
+            let Bvh2 { nodes, primitive_indices, .. } = in_walking_order(tree);
+            let ranks = primitive_indices.iter().map(|index| places[*index as usize]).collect();
+            Region { depth: depth(&nodes), nodes, ranks }
+        };
+        for method in Method::ALL {
+            let leaves = Leaves::of(spheres.len());
+            let forest = Forest::build(&spheres, leaves, effort, method, cancel, region)?;
+            let (joined, depth) = Hierarchy::joined(forest);
+            // Halving gives about as many levels as the number of spheres has bits.
+            assert!(depth <= DEPTH_LIMIT || method != Method::Halved, "the hierarchy has too many levels");
+            if depth <= DEPTH_LIMIT {
+                return Some(joined);
+            }
+        }
+        None
+    }
+
+    /// The tree above the regions, with theirs in place of its leaves, and the number of levels.
+    fn joined(Forest { trees, top }: Forest<Region>) -> (Self, usize) {
+        let top = in_walking_order(top);
+        let node_count: usize = trees.iter().map(|region| region.nodes.len() - 1).sum();
+        let mut nodes = Vec::with_capacity(top.nodes.len() + node_count);
+        let mut ranks = Vec::with_capacity(trees.iter().map(|region| region.ranks.len()).sum());
+        let (mut rest, mut deepest) = (top.nodes.len() as u32, 0);
+        let levels = levels(&top.nodes);
+        // Where the nodes of each region but its root go, and where its spheres do.
+        let mut shifts = Vec::with_capacity(trees.len());
+        for (node, level) in top.nodes.iter().zip(levels) {
+            if !node.is_leaf() {
+                nodes.push(converted(node, &top.nodes, [0, 0]));
+                continue;
+            }
+            let region = &trees[top.primitive_indices[node.first_index as usize] as usize];
+            let shift = [rest - 1, ranks.len() as u32];
+            nodes.push(converted(&region.nodes[0], &region.nodes, shift));
+            shifts.push((region, shift));
+            ranks.extend_from_slice(&region.ranks);
+            rest += region.nodes.len() as u32 - 1;
+            deepest = deepest.max(level + region.depth - 1);
+        }
+        for (region, shift) in shifts {
+            nodes.extend(region.nodes[1..].iter().map(|node| converted(node, &region.nodes, shift)));
+        }
+        let whole = top.nodes[0].aabb();
+        let extent = whole.min.abs().max_element().max(whole.max.abs().max_element());
+        (Hierarchy { nodes, wide: None, extent: R::from_f64(f64::from(extent)), ranks }, deepest)
+    }
+
+    /// A hierarchy for the GPU: see [`Hierarchy::build_unless`].
+    pub fn build_wide<'a>(
+        cancel: &AtomicBool,
+        spheres: impl IntoIterator<Item = &'a Sphere>,
+        origin: DVec3,
+    ) -> Option<Self> {
+        let (mut wide, whole) = WideBvh::build_unless(cancel, spheres, origin)?;
+        let extent = whole.min.abs().max_element().max(whole.max.abs().max_element());
+        let ranks = std::mem::take(&mut wide.order);
+        Some(Hierarchy { nodes: Vec::new(), wide: Some(wide), extent: R::from_f64(f64::from(extent)), ranks })
     }
 }
 
-/// Builds a tree over at least one sphere: with obvhs, unless that would take long for these spheres or give more
-/// levels than a traversal supports. Once `cancel` is set, any valid tree will do; obvhs itself cannot be interrupted.
-pub(super) fn build_tree<T>(
-    spheres: &[Bounded<'_>],
-    leaves: Leaves,
-    effort: Effort,
-    lay_out: impl Fn(Bvh2) -> T,
-    fits: impl Fn(&T) -> bool,
-    cancel: &AtomicBool,
-) -> T {
-    if !parted::is_crowded(spheres) && !cancel.load(Ordering::Relaxed) {
-        let params = params(spheres.len(), leaves, effort);
-        let tree = lay_out(build_bvh2(spheres, params, &mut Duration::default()));
-        if fits(&tree) {
-            return tree;
-        }
+/// A node among `siblings` for the kernel, with its children and spheres this much further back.
+fn converted<R: Real>(node: &Bvh2Node, siblings: &[Bvh2Node], [nodes, spheres]: [u32; 2]) -> Node<R> {
+    let corner = |v: glam::Vec3A| v.to_array().map(|x| R::from_f64(f64::from(x)));
+    let (shift, axis) = match node.is_leaf() {
+        true => (spheres, 0),
+        false => (nodes, parting_axis(siblings, node.first_index as usize)),
+    };
+    Node {
+        low: corner(node.aabb().min),
+        first: node.first_index + shift,
+        high: corner(node.aabb().max),
+        count: node.prim_count | axis,
     }
-    let top_down = |halved| lay_out(parted::build(spheres, leaves.most as usize, halved, cancel));
-    let tree = top_down(false);
-    if fits(&tree) {
-        return tree;
-    }
-    let tree = top_down(true);
-    // Halving gives about as many levels as the number of spheres has bits.
-    assert!(fits(&tree) || cancel.load(Ordering::Relaxed), "the hierarchy has too many levels");
-    tree
 }
 
 /// Reorders nodes and spheres depth-first, so that consecutive visits are close together in memory.
@@ -149,16 +186,18 @@ fn in_walking_order(mut tree: Bvh2) -> Bvh2 {
 
 /// Nodes on the longest path from the root to a leaf.
 fn depth(nodes: &[Bvh2Node]) -> usize {
-    let mut deepest = 0;
-    let mut open = vec![(0_usize, 1_usize)];
-    while let Some((index, depth)) = open.pop() {
-        deepest = deepest.max(depth);
-        if !nodes[index].is_leaf() {
-            let first = nodes[index].first_index as usize;
-            open.extend([(first, depth + 1), (first + 1, depth + 1)]);
+    levels(nodes).into_iter().max().unwrap_or(0)
+}
+
+/// Nodes on the path from the root to each node, itself included. Children come after their parents.
+fn levels(nodes: &[Bvh2Node]) -> Vec<usize> {
+    let mut levels = vec![1; nodes.len()];
+    for (index, node) in nodes.iter().enumerate().filter(|(_, node)| !node.is_leaf()) {
+        for child in [0, 1] {
+            levels[node.first_index as usize + child] = levels[index] + 1;
         }
     }
-    deepest
+    levels
 }
 
 impl<R> Hierarchy<R> {
@@ -169,7 +208,7 @@ impl<R> Hierarchy<R> {
 }
 
 /// obvhs's build parameters for this many spheres.
-fn params(spheres: usize, leaves: Leaves, effort: Effort) -> BvhBuildParams {
+pub(super) fn params(spheres: usize, leaves: Leaves, effort: Effort) -> BvhBuildParams {
     let preset = match (spheres, effort) {
         (0..=1_000, _) => BvhBuildParams::medium_build(),
         (1_001..=20_000, _) | (_, Effort::Thorough) => BvhBuildParams::very_slow_build(),
@@ -197,22 +236,30 @@ fn parting_axis(nodes: &[Bvh2Node], first: usize) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::prepared::parted;
 
     #[test]
     fn too_deep_tree_is_halved() {
         // Each sphere is twice as far away as the one before, so any split that pays leaves most of them together.
         let far = |place: i32| 2_f64.powi(place);
         let sphere = |place| Sphere { center: DVec3::X * far(place), radius: 0.1 * far(place), material: 0 };
-        let spheres: Vec<Sphere> = (0..64).map(sphere).collect();
+        let spheres: Vec<Sphere> = (0..80).map(sphere).collect();
         let bounded = Bounded::all(&spheres, &DVec3::ZERO);
-        const LEVELS: usize = 7;
         let go_on = AtomicBool::new(false);
-        assert!(depth(&parted::build(&bounded, 1, false, &go_on).nodes) > LEVELS);
-        let fits = |tree: &Bvh2| depth(&tree.nodes) <= LEVELS;
-        let tree = build_tree(&bounded, Leaves::SINGLE, Effort::Quick, |tree| tree, fits, &go_on);
-        assert_eq!(depth(&tree.nodes), LEVELS);
-        let mut order = tree.primitive_indices;
-        order.sort_unstable();
-        assert!(order.into_iter().eq(0..64), "each sphere is in it once");
+        let tree = in_walking_order(parted::build(&bounded, 1, false, &go_on));
+        assert!(depth(&tree.nodes) > 30, "{}", depth(&tree.nodes));
+        let tree = in_walking_order(parted::build(&bounded, 1, true, &go_on));
+        assert_eq!(depth(&tree.nodes), 8);
+    }
+
+    #[test]
+    fn regions_are_joined_into_one_tree() {
+        let spheres = crate::scene::builtin::field(50_000).0.spheres.split_off(1);
+        let hierarchy = Hierarchy::<f32>::build(&spheres, DVec3::ZERO, Effort::Quick);
+        let mut ranks = hierarchy.ranks.clone();
+        ranks.sort_unstable();
+        assert!(ranks.into_iter().eq(0..spheres.len() as u32), "each sphere is in it once");
+        let one_region = Hierarchy::<f32>::build(&spheres, DVec3::ZERO, Effort::Thorough);
+        assert_eq!(hierarchy.extent, one_region.extent);
     }
 }

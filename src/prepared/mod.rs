@@ -6,6 +6,7 @@ mod facts;
 mod groups;
 pub mod hierarchy;
 mod parted;
+mod regions;
 pub mod wide_bvh;
 
 use crate::film::FIXED_POINT_SCALE;
@@ -14,12 +15,13 @@ use crate::kernel::{
     AnchoredSphere, CameraTable, Features, Real, RecordColumns, Roots, ShadingRecord, SortedSpheres,
     UNDER_EYE,
 };
-use crate::scene::{Material, Scene, Sphere};
+use crate::scene::{Material, Scene};
 use crate::stages::SurfaceRule;
 use facts::Facts;
 use glam::DVec3;
 use groups::{Anchored, Groups};
 use hierarchy::{Effort, Hierarchy};
+use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -27,6 +29,17 @@ use std::time::{Duration, Instant};
 /// From this many spheres on, a hierarchy is built. On generated fields with 8 lanes, the list was a tenth faster with
 /// 4 spheres and the hierarchy a tenth faster with 48; between 12 and 32 they were equally fast.
 const HIERARCHY_MIN_SPHERES: usize = 24;
+
+/// The hierarchy that a scene of many spheres gets.
+#[derive(Clone, Copy)]
+enum Tree {
+    /// For the CPU, built quickly.
+    Quick,
+    /// For the CPU, the best.
+    Thorough,
+    /// For the GPU.
+    Wide,
+}
 
 /// A job's spheres, materials, camera and sky for a kernel of precision `R`.
 ///
@@ -56,7 +69,7 @@ pub struct PreparedScene<R> {
     /// Most samples whose sum in units of `2^-24` fits 32 bits: a power of two.
     pub block_limit: u32,
     pub settings: RenderSettings,
-    /// What the job needs from a kernel.
+    /// The features that the job needs from a kernel.
     pub features: Features,
     /// The origin of the prepared coordinates, in scene coordinates.
     pub origin: DVec3,
@@ -68,30 +81,66 @@ pub struct PreparedScene<R> {
 impl<R: Real> PreparedScene<R> {
     /// Sorts, anchors and rounds the scene, and builds a hierarchy if there are enough spheres.
     pub fn new(job: &RenderJob) -> Self {
-        Self::with_hierarchy(job, Some(Effort::Quick), &AtomicBool::new(false))
+        Self::made(job, Some(Tree::Quick))
     }
 
     /// Like [`PreparedScene::new`], with the best possible hierarchy, which may take many times as long. Both render
     /// the same bits.
     pub fn thorough(job: &RenderJob) -> Self {
-        Self::with_hierarchy(job, Some(Effort::Thorough), &AtomicBool::new(false))
+        Self::made(job, Some(Tree::Thorough))
     }
 
     /// Like [`PreparedScene::new`], but never builds a hierarchy, for comparisons.
     pub fn as_list(job: &RenderJob) -> Self {
-        Self::with_hierarchy(job, None, &AtomicBool::new(false))
+        Self::made(job, None)
     }
 
-    /// Once `cancel` is set, the hierarchy is built in haste.
-    fn with_hierarchy(job: &RenderJob, effort: Option<Effort>, cancel: &AtomicBool) -> Self {
+    /// Like [`PreparedScene::new`], with a hierarchy for the GPU.
+    pub fn wide(job: &RenderJob) -> Self {
+        Self::made(job, Some(Tree::Wide))
+    }
+
+    /// As [`PreparedScene::wide`]. Returns `None` soon after `cancel` is set. Before it
+    /// builds a hierarchy, it announces the features that the job needs from a kernel.
+    pub fn for_gpu(cancel: &AtomicBool, job: &RenderJob, announce: impl FnOnce(&Features)) -> Option<Self> {
+        Self::with_tree(job, Some(Tree::Wide), cancel, announce)
+    }
+
+    fn made(job: &RenderJob, tree: Option<Tree>) -> Self {
+        #[expect(clippy::expect_used, reason = "nothing cancels it")]
+        Self::with_tree(job, tree, &AtomicBool::new(false), |_| ()).expect("it is not cancelled")
+    }
+
+    fn with_tree(
+        job: &RenderJob,
+        tree: Option<Tree>,
+        cancel: &AtomicBool,
+        announce: impl FnOnce(&Features),
+    ) -> Option<Self> {
         let facts = Arc::new(Facts::of(job.scene()));
         let groups = Groups::of(job, &facts);
         let (mut listed, mut hierarchy, mut hierarchy_time) = (groups.in_list_order(), None, Duration::ZERO);
         let is_wanted = job.rules().surface == SurfaceRule::Exact && listed.len() >= HIERARCHY_MIN_SPHERES;
-        if let Some(effort) = effort.filter(|_| is_wanted) {
+        if let Some(tree) = tree.filter(|_| is_wanted) {
+            let anchored: Vec<AnchoredSphere<R>> =
+                groups.anchored.iter().map(|a| anchored_sphere(job.scene(), a, groups.origin)).collect();
+            announce(&Features::of(
+                job,
+                &SortedSpheres {
+                    opaque_count: 0,
+                    two_root_count: listed.len(),
+                    anchored: &anchored,
+                    has_hierarchy: true,
+                    has_specks: groups.has_specks,
+                },
+            ));
             let begin = Instant::now();
             let spheres = listed.iter().map(|index| &job.scene().spheres[*index as usize]);
-            let built = Hierarchy::build_unless(cancel, spheres, groups.origin, effort);
+            let built = match tree {
+                Tree::Quick => Hierarchy::build_unless(cancel, spheres, groups.origin, Effort::Quick),
+                Tree::Thorough => Hierarchy::build_unless(cancel, spheres, groups.origin, Effort::Thorough),
+                Tree::Wide => Hierarchy::build_wide(cancel, spheres, groups.origin),
+            }?;
             listed = built.ranks.iter().map(|rank| listed[*rank as usize]).collect();
             hierarchy = Some(built);
             hierarchy_time = begin.elapsed();
@@ -106,10 +155,13 @@ impl<R: Real> PreparedScene<R> {
             let radius2 = sphere.radius * sphere.radius * if is_signed { -1.0 } else { 1.0 };
             [center.x, center.y, center.z, radius2].map(R::from_f64)
         };
-        let mut opaque: Vec<[R; 4]> = listed.iter().enumerate().map(packed).collect();
-        let two_root = opaque.split_off(if hierarchy.is_some() { 0 } else { one_root });
+        let mut opaque: Vec<[R; 4]> = listed.par_iter().enumerate().map(packed).collect();
+        let two_root = match hierarchy {
+            Some(_) => std::mem::take(&mut opaque),
+            None => opaque.split_off(one_root),
+        };
         let mut records = Vec::with_capacity(listed.len() + groups.anchored.len() + 1);
-        records.extend(listed.iter().map(|i| shading_record(scene, *i, groups.origin, None)));
+        records.par_extend(listed.par_iter().map(|i| shading_record(scene, *i, groups.origin, None)));
         let (bottom, top) = (scene.sky.bottom * FIXED_POINT_SCALE, scene.sky.top * FIXED_POINT_SCALE);
         let mut prepared = PreparedScene {
             opaque,
@@ -131,19 +183,18 @@ impl<R: Real> PreparedScene<R> {
             warning: None,
         };
         prepared.see(job, groups);
-        prepared
+        Some(prepared)
     }
 
     /// Prepares `job`, reusing the hierarchy of `old` if the jobs differ only in camera and settings. Returns `None` soon
     /// after `cancel` is set.
     pub fn renewed(cancel: &AtomicBool, old: Option<(Self, RenderJob)>, job: &RenderJob) -> Option<Self> {
-        let is_cancelled = || cancel.load(Ordering::Relaxed);
-        if is_cancelled() {
+        if cancel.load(Ordering::Relaxed) {
             return None;
         }
         let followed = old.and_then(|(mut old, before)| old.follow(&before, job).then_some(old));
-        let prepared = followed.unwrap_or_else(|| Self::with_hierarchy(job, Some(Effort::Quick), cancel));
-        (!is_cancelled()).then_some(prepared)
+        let prepared = followed.or_else(|| Self::with_tree(job, Some(Tree::Quick), cancel, |_| ()));
+        prepared.filter(|_| !cancel.load(Ordering::Relaxed))
     }
 
     /// Turns the prepared scene of `before` into that of `job` if only camera and settings differ and the hierarchy can
@@ -200,12 +251,6 @@ impl<R: Real> PreparedScene<R> {
     /// A warning about what single precision cannot represent, with numbers and a remedy.
     pub fn warning(&self) -> Option<&String> {
         self.warning.as_ref()
-    }
-
-    /// The spheres of `two_root` as in the scene. `job` must be the one that this scene was prepared from.
-    pub fn spheres_of_hierarchy<'a>(&'a self, job: &'a RenderJob) -> impl Iterator<Item = &'a Sphere> {
-        let indices = self.scene_index.iter().skip(self.opaque.len()).take(self.two_root.len());
-        indices.map(|index| &job.scene().spheres[*index as usize])
     }
 }
 

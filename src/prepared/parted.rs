@@ -2,12 +2,10 @@
 //! spheres over many scales. For these, obvhs takes quadratic time and builds a tree as deep as there are spheres.
 
 use super::bounded::Bounded;
-use glam::DVec3;
 use obvhs::Boundable;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::node::Bvh2Node;
-use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Levels split at the lowest cost. Below them nodes are halved, which limits a tree's depth to this plus the logarithm
@@ -18,7 +16,7 @@ const CHOSEN_LEVELS: usize = 32;
 const BINS: usize = 16;
 
 /// Up to this many spheres, clustering is fast in any arrangement.
-const FEW_SPHERES: usize = 2048;
+pub(super) const FEW_SPHERES: usize = 2048;
 
 /// With this many spheres in nested runs, a scene counts as crowded.
 const CROWD: usize = 1024;
@@ -29,7 +27,7 @@ const LEFT_ALONE: usize = 256;
 /// Rounds of pairing. Millions of scattered spheres end as one cluster.
 const ROUNDS: usize = 64;
 
-/// Shorter runs of nested spheres are hollow balls and the like.
+/// Shorter runs of nested spheres are hollow balls and similar objects.
 const NESTED_RUN: usize = 32;
 
 /// A range of spheres still to be split, and its node.
@@ -40,36 +38,18 @@ struct Open {
     depth: usize,
 }
 
-/// Whether clustering would take long: enough spheres are nested in each other, or pair one at a time.
-pub(super) fn is_crowded(spheres: &[Bounded<'_>]) -> bool {
-    if spheres.len() < FEW_SPHERES {
-        return false;
-    }
-    let order = along_a_curve(spheres);
-    has_nested_runs(spheres, &order) || pairs_slowly(spheres, &order)
+/// Whether clustering would take long: enough spheres are nested in each other, or pair one at a time. They come along
+/// a curve, with their boxes.
+pub(super) fn is_crowded(spheres: &[&Bounded<'_>], boxes: &[Aabb]) -> bool {
+    spheres.len() >= FEW_SPHERES && (has_nested_runs(spheres) || pairs_slowly(boxes))
 }
 
-/// The spheres along a curve on which neighbours are mostly neighbours in space.
-fn along_a_curve(spheres: &[Bounded<'_>]) -> Vec<u32> {
-    let lowest = spheres.par_iter().map(Bounded::center).reduce(|| DVec3::INFINITY, DVec3::min);
-    let highest = spheres.par_iter().map(Bounded::center).reduce(|| DVec3::NEG_INFINITY, DVec3::max);
-    let size = (highest - lowest).max_element().max(f64::MIN_POSITIVE);
-    let mut order: Vec<(u64, u32)> = spheres
-        .par_iter()
-        .enumerate()
-        .map(|(index, sphere)| (morton_code(((sphere.center() - lowest) / size).to_array()), index as u32))
-        .collect();
-    order.par_sort_unstable();
-    order.into_iter().map(|(_, index)| index).collect()
-}
-
-fn has_nested_runs(spheres: &[Bounded<'_>], order: &[u32]) -> bool {
+fn has_nested_runs(spheres: &[&Bounded<'_>]) -> bool {
     let (mut nested, mut run) = (0, 0);
-    for pair in order.windows(2) {
-        let [a, b] = [0, 1].map(|i| &spheres[pair[i] as usize]);
+    for pair in spheres.windows(2) {
         // Being inside the box is enough here.
-        let apart = (a.center() - b.center()).abs().max_element();
-        if apart <= (a.radius() - b.radius()).abs() {
+        let apart = (pair[0].center() - pair[1].center()).abs().max_element();
+        if apart <= (pair[0].radius() - pair[1].radius()).abs() {
             run += 1;
             nested += usize::from(run >= NESTED_RUN);
         } else {
@@ -81,9 +61,9 @@ fn has_nested_runs(spheres: &[Bounded<'_>], order: &[u32]) -> bool {
 
 /// Whether many clusters remain after [`ROUNDS`] of pairing neighbours. If sizes or distances grow along a line, each
 /// sphere is nearest to the one before it, so only one pair forms per round.
-fn pairs_slowly(spheres: &[Bounded<'_>], order: &[u32]) -> bool {
-    let mut clusters: Vec<Aabb> = order.par_iter().map(|index| spheres[*index as usize].aabb()).collect();
-    for _ in 0..ROUNDS {
+fn pairs_slowly(boxes: &[Aabb]) -> bool {
+    let mut clusters = paired(boxes);
+    for _ in 1..ROUNDS {
         if clusters.len() <= LEFT_ALONE {
             return false;
         }
@@ -94,7 +74,7 @@ fn pairs_slowly(spheres: &[Bounded<'_>], order: &[u32]) -> bool {
 
 /// Merges mutual nearest neighbours, as obvhs does among more neighbours.
 fn paired(clusters: &[Aabb]) -> Vec<Aabb> {
-    let costs: Vec<f32> = clusters.par_windows(2).map(|pair| pair[0].union(&pair[1]).half_area()).collect();
+    let costs: Vec<f32> = clusters.windows(2).map(|pair| pair[0].union(&pair[1]).half_area()).collect();
     let cost = |place: usize| costs.get(place).copied().unwrap_or(f32::INFINITY);
     let mut pairs = Vec::with_capacity(clusters.len());
     let (mut place, mut before) = (0, f32::INFINITY);
@@ -105,23 +85,6 @@ fn paired(clusters: &[Aabb]) -> Vec<Aabb> {
         before = cost(place - 1);
     }
     pairs
-}
-
-/// Interleaves 21 bits of each coordinate in 0 to 1.
-fn morton_code(place: [f64; 3]) -> u64 {
-    place.iter().enumerate().fold(0, |code, (axis, x)| {
-        let mut bits = (x * f64::from((1 << 21) - 1)) as u64;
-        for (shift, mask) in [
-            (32, 0x001F_0000_0000_FFFF),
-            (16, 0x001F_0000_FF00_00FF),
-            (8, 0x100F_00F0_0F00_F00F),
-            (4, 0x10C3_0C30_C30C_30C3),
-            (2, 0x1249_2492_4924_9249),
-        ] {
-            bits = (bits | bits << shift) & mask;
-        }
-        code | bits << axis
-    })
 }
 
 /// Builds a tree over at least one box, with at most `leaf_size` per leaf. With `halved`, splits every node in the

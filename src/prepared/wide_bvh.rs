@@ -4,13 +4,14 @@
 //! it reads.
 
 use super::bounded::Bounded;
-use super::hierarchy::{Effort, Leaves, build_tree};
+use super::hierarchy::{Effort, Leaves};
+use super::regions::{Forest, Method};
 use crate::kernel::WIDE_STACK_SIZE;
 use crate::scene::Sphere;
 use glam::DVec3;
-use obvhs::Boundable;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
+use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 use obvhs::cwbvh::node::CwBvhNode;
 use std::sync::atomic::AtomicBool;
@@ -22,70 +23,63 @@ const LEAF_SPHERES: u32 = 3;
 pub const DEPTH_LIMIT: usize = WIDE_STACK_SIZE;
 
 /// Rows of four words in a node. Twin: `NODE_ROWS` in shaders/bvh.wgsl.
+///
+/// Rows 0 to 11 hold the bounds of children 0 to 3 and 4 to 7, lower then upper, along x, y and z. Rows 12 and 13 hold
+/// the bits that each child adds to a mask of hits. Row 14 holds the first child, the first sphere, and which children
+/// are nodes; row 15 is padding.
 pub const NODE_ROWS: usize = 16;
 
-/// A wide hierarchy, root first.
+type NodeRows = [[u32; 4]; NODE_ROWS];
+
+/// The row of a node that holds its links.
+const LINKS: usize = 14;
+
+/// A wide hierarchy.
 #[derive(Clone, Debug)]
 pub struct WideBvh {
-    /// Children come after their parents. The compressed boxes are not used.
-    nodes: Vec<CwBvhNode>,
-    /// The boxes of each node's children.
-    boxes: Vec<[Aabb; 8]>,
+    /// The nodes, root first. Children come after their parents.
+    pub nodes: Vec<NodeRows>,
     /// The sphere index at each place in leaf order.
     pub order: Vec<u32>,
+    /// Nodes on the longest path from the root to a leaf.
+    depth: usize,
 }
 
 impl WideBvh {
-    /// Builds the hierarchy over at least one sphere, with coordinates relative to `origin`.
-    pub fn build<'a>(spheres: impl IntoIterator<Item = &'a Sphere>, origin: DVec3) -> Self {
+    /// Builds the hierarchy over at least one sphere, with coordinates relative to `origin`. Also returns the box around
+    /// all. Returns `None` soon after `cancel` is set.
+    pub fn build_unless<'a>(
+        cancel: &AtomicBool,
+        spheres: impl IntoIterator<Item = &'a Sphere>,
+        origin: DVec3,
+    ) -> Option<(Self, Aabb)> {
         let bounded = Bounded::all(spheres, &origin);
-        let wide = |tree: Bvh2| {
-            let wide = bvh2_to_cwbvh(&tree, LEAF_SPHERES, true, false);
-            WideBvh { nodes: wide.nodes, boxes: Vec::new(), order: wide.primitive_indices }
-        };
-        let fits = |built: &WideBvh| built.depth() <= DEPTH_LIMIT;
-        let mut built =
-            build_tree(&bounded, Leaves::SINGLE, Effort::Quick, wide, fits, &AtomicBool::new(false));
-        let boxes: Vec<Aabb> = built.order.iter().map(|index| bounded[*index as usize].aabb()).collect();
-        built.set_boxes(&boxes);
-        #[cfg(test)]
-        assert_eq!(built.validate(&bounded), Ok(()));
-        built
-    }
-
-    /// Number of nodes.
-    pub fn node_count(&self) -> usize {
-        self.nodes.len()
-    }
-
-    /// The nodes as rows of four words. Rows 0 to 11 hold the bounds of children 0 to 3 and 4 to 7,
-    /// lower then upper, along x, y and z. Rows 12 and 13 hold the bits that each child adds to a mask of hits. Row 14
-    /// holds the first child, the first sphere, and which children are nodes; row 15 is padding.
-    pub fn rows(&self) -> Vec<[u32; 4]> {
-        let mut rows = Vec::with_capacity(NODE_ROWS * self.nodes.len());
-        for (node, boxes) in self.nodes.iter().zip(&self.boxes) {
-            let mut own = [[0; 4]; NODE_ROWS];
-            for child in (0..8).filter(|child| !node.is_child_empty(*child)) {
-                let (four, column) = (child / 4, child % 4);
-                for axis in 0..3 {
-                    own[4 * axis + four][column] = boxes[child].min[axis].to_bits();
-                    own[4 * axis + 2 + four][column] = boxes[child].max[axis].to_bits();
-                }
-                let mark = u32::from(node.child_meta[child]);
-                own[12 + four][column] = (mark >> 5) << (mark & 31);
+        for method in Method::ALL {
+            let forest =
+                Forest::build(&bounded, Leaves::SINGLE, Effort::Quick, method, cancel, WideBvh::region)?;
+            let whole = *forest.top.nodes[0].aabb();
+            let built = WideBvh::joined(forest);
+            // Halving gives about as many levels as the number of spheres has bits.
+            assert!(
+                built.depth <= DEPTH_LIMIT || method != Method::Halved,
+                "the hierarchy has too many levels"
+            );
+            if built.depth <= DEPTH_LIMIT {
+                #[cfg(test)]
+                assert_eq!(built.validate(&bounded), Ok(()));
+                return Some((built, whole));
             }
-            own[14] = [node.child_base_idx, node.primitive_base_idx, u32::from(node.imask), 0];
-            rows.extend(own);
         }
-        rows
+        None
     }
 
-    /// Computes all boxes from those of the spheres, given in leaf order.
-    fn set_boxes(&mut self, spheres: &[Aabb]) {
-        let mut boxes = vec![Aabb::empty(); self.nodes.len()];
-        self.boxes = vec![[Aabb::empty(); 8]; self.nodes.len()];
-        for index in (0..self.nodes.len()).rev() {
-            let node = &self.nodes[index];
+    /// The hierarchy of a region, whose spheres have these boxes and these places in the list.
+    fn region(tree: Bvh2, spheres: &[Aabb], places: &[u32]) -> WideBvh {
+        let CwBvh { nodes, primitive_indices, .. } = bvh2_to_cwbvh(&tree, LEAF_SPHERES, true, false);
+        let spheres: Vec<Aabb> = primitive_indices.iter().map(|index| spheres[*index as usize]).collect();
+        let (mut around, mut depths) = (vec![Aabb::empty(); nodes.len()], vec![1; nodes.len()]);
+        let mut rows = vec![[[0; 4]; NODE_ROWS]; nodes.len()];
+        for (index, node) in nodes.iter().enumerate().rev() {
             let children: [Aabb; 8] = std::array::from_fn(|child| {
                 if node.is_child_empty(child) {
                     Aabb::empty()
@@ -93,24 +87,119 @@ impl WideBvh {
                     let (first, count) = node.child_primitives(child);
                     united(&spheres[first as usize..(first + count) as usize])
                 } else {
-                    boxes[node.child_node_index(child) as usize]
+                    let child = node.child_node_index(child) as usize;
+                    depths[index] = depths[index].max(1 + depths[child]);
+                    around[child]
                 }
             });
-            boxes[index] = united(&children);
-            self.boxes[index] = children;
+            around[index] = united(&children);
+            rows[index] = rows_of(node, &children);
         }
+        let order = primitive_indices.iter().map(|index| places[*index as usize]).collect();
+        WideBvh { nodes: rows, order, depth: depths[0] }
+    }
+
+    /// The nodes above the regions, with theirs in place of its leaves.
+    fn joined(Forest { trees, top }: Forest<WideBvh>) -> Self {
+        if let [_] = trees.as_slice() {
+            return trees.into_iter().next().unwrap_or_else(|| unreachable!("there is one"));
+        }
+        let count = |count: fn(&WideBvh) -> usize| trees.iter().map(count).sum::<usize>();
+        let (node_count, sphere_count) = (count(|tree| tree.nodes.len()), count(|tree| tree.order.len()));
+        let mut trees: Vec<Option<WideBvh>> = trees.into_iter().map(Some).collect();
+        let above = bvh2_to_cwbvh(&top, 1, true, false);
+        let mut nodes: Vec<NodeRows> = Vec::with_capacity(node_count + above.nodes.len());
+        nodes.push([[0; 4]; NODE_ROWS]);
+        let mut order = Vec::with_capacity(sphere_count);
+        let mut depth = 0;
+        // Nodes above the regions, each with its place and level.
+        let mut open = vec![(0, 0_usize, 1)];
+        let mut placed = Vec::new();
+        while let Some((index, place, level)) = open.pop() {
+            let mut node: CwBvhNode = above.nodes[index as usize];
+            let first = nodes.len();
+            let children: Vec<usize> = (0..8).filter(|child| !node.is_child_empty(*child)).collect();
+            nodes.resize(first + children.len(), [[0; 4]; NODE_ROWS]);
+            let mut boxes = [Child::Empty; 8];
+            for (child, place) in children.into_iter().zip(first..) {
+                if !node.is_leaf(child) {
+                    open.push((node.child_node_index(child), place, level + 1));
+                    boxes[child] = Child::Node(place);
+                    continue;
+                }
+                let (leaf, _) = node.child_primitives(child);
+                let region = above.primitive_indices[leaf as usize] as usize;
+                let Some(tree) = trees[region].take() else { continue };
+                let shift = [nodes.len() as u32 - 1, order.len() as u32];
+                let mut shifted = tree.nodes.into_iter().map(|mut rows| {
+                    rows[LINKS][0] += shift[0];
+                    rows[LINKS][1] += shift[1];
+                    rows
+                });
+                nodes[place] = shifted.next().unwrap_or_default();
+                nodes.extend(shifted);
+                order.extend(tree.order);
+                depth = depth.max(level + tree.depth);
+                boxes[child] = Child::Node(place);
+            }
+            // All its children are nodes now.
+            for child in (0..8).filter(|child| boxes[*child] != Child::Empty) {
+                node.imask |= 1 << child;
+                node.child_meta[child] = 0b0010_0000 | (24 + child as u8);
+            }
+            (node.child_base_idx, node.primitive_base_idx) = (first as u32, 0);
+            placed.push((place, node, boxes));
+        }
+        // Parents have been placed before their children.
+        for (place, node, children) in placed.into_iter().rev() {
+            let around = children.map(|child| match child {
+                Child::Empty => Aabb::empty(),
+                Child::Node(place) => united(&boxes_of(&nodes[place])),
+            });
+            nodes[place] = rows_of(&node, &around);
+        }
+        WideBvh { nodes, order, depth }
     }
 
     /// Nodes on the longest path from the root to a leaf.
     pub fn depth(&self) -> usize {
-        let mut depths = vec![1; self.nodes.len()];
-        for (index, node) in self.nodes.iter().enumerate() {
-            for child in (0..8).filter(|child| !node.is_leaf(*child)) {
-                depths[node.child_node_index(child) as usize] = depths[index] + 1;
-            }
-        }
-        depths.into_iter().max().unwrap_or(0)
+        self.depth
     }
+}
+
+/// A child of a node above the regions.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Child {
+    Empty,
+    /// Its place.
+    Node(usize),
+}
+
+/// A node as the GPU reads it, with the boxes of its children.
+fn rows_of(node: &CwBvhNode, boxes: &[Aabb; 8]) -> NodeRows {
+    let mut rows = [[0; 4]; NODE_ROWS];
+    for child in (0..8).filter(|child| !node.is_child_empty(*child)) {
+        let (four, column) = (child / 4, child % 4);
+        for axis in 0..3 {
+            rows[4 * axis + four][column] = boxes[child].min[axis].to_bits();
+            rows[4 * axis + 2 + four][column] = boxes[child].max[axis].to_bits();
+        }
+        let mark = u32::from(node.child_meta[child]);
+        rows[12 + four][column] = (mark >> 5) << (mark & 31);
+    }
+    rows[LINKS] = [node.child_base_idx, node.primitive_base_idx, u32::from(node.imask), 0];
+    rows
+}
+
+/// The boxes of a node's children; those of children that it lacks are empty.
+fn boxes_of(rows: &NodeRows) -> [Aabb; 8] {
+    std::array::from_fn(|child| {
+        let (four, column) = (child / 4, child % 4);
+        let corner = |row: usize| {
+            glam::Vec3A::from([0, 4, 8].map(|axis| f32::from_bits(rows[row + axis + four][column])))
+        };
+        if rows[12 + four][column] == 0 { Aabb::empty() } else { Aabb::new(corner(0), corner(2)) }
+    })
 }
 
 fn united(boxes: &[Aabb]) -> Aabb {
@@ -124,23 +213,37 @@ mod tests {
 
     impl WideBvh {
         /// Checks what traversals rely on: each node has one parent, which comes before it; each of the `spheres` is in one
-        /// leaf and inside all boxes around that leaf.
+        /// leaf and inside all boxes around that leaf; no path is longer than stated.
         pub(super) fn validate(&self, spheres: &[Bounded<'_>]) -> Result<(), String> {
             let (mut is_reached, mut is_held) = (vec![false; self.nodes.len()], vec![false; spheres.len()]);
             // Every node, with the boxes that enclose it.
             let mut open = vec![(0_u32, Vec::new())];
             while let Some((index, around)) = open.pop() {
-                let Some(node) = self.nodes.get(index as usize) else {
+                let Some(rows) = self.nodes.get(index as usize) else {
                     return Err(format!("node {index} is named, but there are {}", self.nodes.len()));
                 };
                 if std::mem::replace(&mut is_reached[index as usize], true) {
                     return Err(format!("node {index} has two parents"));
                 }
-                for child in (0..8).filter(|child| !node.is_child_empty(*child)) {
+                if around.len() >= self.depth {
+                    return Err(format!("node {index} is deeper than {}", self.depth));
+                }
+                let [first_child, first_sphere, which_are_nodes, _] = rows[LINKS];
+                let boxes = boxes_of(rows);
+                for child in 0..8 {
+                    let mark = rows[12 + child / 4][child % 4];
+                    if mark == 0 {
+                        continue;
+                    }
                     let mut around: Vec<Aabb> = around.clone();
-                    around.push(self.boxes[index as usize][child]);
-                    if !node.is_leaf(child) {
-                        let child = node.child_node_index(child);
+                    around.push(boxes[child]);
+                    let is_node = which_are_nodes >> child & 1 == 1;
+                    if is_node != (mark == 1 << (24 + child)) {
+                        return Err(format!("the mark of child {child} of node {index} is {mark:#x}"));
+                    }
+                    if is_node {
+                        let before = (which_are_nodes & ((1 << child) - 1)).count_ones();
+                        let child = first_child + before;
                         if child <= index {
                             return Err(format!(
                                 "node {index} has the child {child}, which is not behind it"
@@ -149,8 +252,8 @@ mod tests {
                         open.push((child, around));
                         continue;
                     }
-                    let (first, count) = node.child_primitives(child);
-                    for place in first..first + count {
+                    let first = first_sphere + mark.trailing_zeros();
+                    for place in first..first + mark.count_ones() {
                         let number = self.order.get(place as usize).copied().unwrap_or(u32::MAX);
                         let Some(sphere) = spheres.get(number as usize) else {
                             return Err(format!("node {index} names sphere {number} of {}", spheres.len()));
@@ -178,8 +281,11 @@ mod tests {
     }
 
     fn check(spheres: &[Sphere]) {
-        let built = WideBvh::build(spheres, DVec3::ZERO);
+        let (built, whole) = WideBvh::build_unless(&AtomicBool::new(false), spheres, DVec3::ZERO)
+            .expect("it is not cancelled");
         assert_eq!(built.validate(&Bounded::all(spheres, &DVec3::ZERO)), Ok(()));
+        let root = united(&boxes_of(&built.nodes[0]));
+        assert_eq!([root.min, root.max], [whole.min, whole.max]);
     }
 
     #[test]
@@ -199,21 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_hold_boxes_marks_and_links() {
-        let built = WideBvh::build(&field(3000).0.spheres, DVec3::ZERO);
-        let rows = built.rows();
-        assert_eq!(rows.len(), NODE_ROWS * built.nodes.len());
-        for ((node, boxes), rows) in built.nodes.iter().zip(&built.boxes).zip(rows.chunks_exact(NODE_ROWS)) {
-            assert_eq!(rows[14][..3], [node.child_base_idx, node.primitive_base_idx, u32::from(node.imask)]);
-            for child in (0..8).filter(|child| !node.is_child_empty(*child)) {
-                let (four, column) = (child / 4, child % 4);
-                let mark = u32::from(node.child_meta[child]);
-                assert_eq!(rows[12 + four][column], (mark >> 5) << (mark & 31));
-                let bound =
-                    |row: usize| [0, 4, 8].map(|axis| f32::from_bits(rows[row + axis + four][column]));
-                let aabb = &boxes[child];
-                assert_eq!([bound(0), bound(2)], [aabb.min.to_array(), aabb.max.to_array()]);
-            }
-        }
+    fn regions_are_joined_into_one_hierarchy() {
+        check(&field(50_000).0.spheres);
     }
 }

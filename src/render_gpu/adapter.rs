@@ -1,5 +1,6 @@
 //! Adapters: what they are, what they can do, and which comes first.
 
+use crate::system::foreign;
 use std::fmt;
 use std::sync::OnceLock;
 
@@ -143,7 +144,7 @@ pub fn all_adapters(wanted: impl Fn(&AdapterInfo) -> bool) -> Vec<(AdapterInfo, 
 }
 
 fn adapters_of(backends: wgpu::Backends) -> Vec<(AdapterInfo, wgpu::Adapter)> {
-    let found = pollster::block_on(instance(backends).enumerate_adapters(backends));
+    let found = foreign::logged(|| pollster::block_on(instance(backends).enumerate_adapters(backends)));
     found.into_iter().map(|adapter| (AdapterInfo::of(&adapter), adapter)).collect()
 }
 

@@ -13,7 +13,7 @@ use crate::kernel::{Features, RECORD_COLUMNS, words_of};
 use crate::prepared::PreparedScene;
 use std::borrow::Cow;
 use std::sync::atomic::AtomicBool;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A job loaded to the device.
 pub(super) struct Loaded {
@@ -110,14 +110,16 @@ impl GpuRenderer {
         job: &RenderJob,
         cancel: &AtomicBool,
     ) -> Result<SceneOnDevice, RenderError> {
-        let made = PreparedScene::<f32>::renewed(cancel, None, job);
-        let prepared = made.ok_or(RenderError::Cancelled)?;
-        let features = self.features(&prepared);
-        self.kernels.begin(&self.gpu, (EntryPoint::PathTrace, features, 0));
-        let begin = Instant::now();
-        let data = SceneData::new(job, &prepared);
-        let hierarchy_time = prepared.hierarchy_time + begin.elapsed();
-        self.copied(prepared, data, hierarchy_time).map_err(failed)
+        let (gpu, kernels) = (&self.gpu, &mut self.kernels);
+        let specialise = self.options.specialise;
+        let made = PreparedScene::<f32>::for_gpu(cancel, job, |needed| {
+            let features = if specialise { *needed } else { needed.generalised() };
+            // With a hierarchy, paths may be put aside.
+            kernels.begin(gpu, (EntryPoint::PathTrace, Features { aside: true, ..features }, 0));
+        });
+        let mut prepared = made.ok_or(RenderError::Cancelled)?;
+        let data = SceneData::new(&mut prepared);
+        self.copied(prepared, data).map_err(failed)
     }
 
     fn features(&self, prepared: &PreparedScene<f32>) -> Features {
@@ -158,12 +160,7 @@ impl GpuRenderer {
         self.options.film_limit.map_or(limit, |wanted| wanted.min(limit))
     }
 
-    fn copied(
-        &self,
-        prepared: PreparedScene<f32>,
-        scene: SceneData,
-        hierarchy_time: Duration,
-    ) -> Result<SceneOnDevice, String> {
+    fn copied(&self, prepared: PreparedScene<f32>, scene: SceneData) -> Result<SceneOnDevice, String> {
         let gpu = &self.gpu;
         let limit = self.binding_limit();
         let contents = scene.buffers(&prepared);
@@ -189,11 +186,11 @@ impl GpuRenderer {
             group,
             anchored_buffer,
             rows_buffer,
-            scene_index: scene.scene_index,
+            scene_index: prepared.scene_index.clone(),
             node_count: scene.node_count,
             job_buffer,
+            hierarchy_time: prepared.hierarchy_time,
             prepared,
-            hierarchy_time,
         })
     }
 

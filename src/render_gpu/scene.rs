@@ -5,19 +5,16 @@ use super::layout::GpuJob;
 use crate::job::render::RenderJob;
 use crate::kernel::{AnchoredSphere, Features, RECORD_COLUMNS, words_of};
 use crate::prepared::PreparedScene;
-use crate::prepared::wide_bvh::WideBvh;
 use crate::stages::SurfaceRule;
 use glam::DVec3;
 use std::borrow::Cow;
 
-/// The contents of a scene's buffers.
+/// The contents of a scene's buffers that its prepared scene does not hold.
 pub struct SceneData {
     /// Centre and squared radius of each sphere.
     pub spheres: Vec<[f32; 4]>,
     /// The shading record of each sphere, huge ones last.
     pub records: Vec<[f32; RECORD_COLUMNS]>,
-    /// The index in the scene of each sphere.
-    pub scene_index: Vec<u32>,
     /// The hierarchy's nodes, followed by each sphere's place in the list; not empty, as the shader's type requires.
     pub nodes: Vec<[u32; 4]>,
     /// Number of nodes.
@@ -25,23 +22,19 @@ pub struct SceneData {
 }
 
 impl SceneData {
-    /// Collects the data of a scene. If there is a hierarchy, spheres and records are in the order of its leaves.
-    pub fn new(job: &RenderJob, prepared: &PreparedScene<f32>) -> Self {
+    /// Collects the data of a scene, and takes the nodes of its hierarchy.
+    pub fn new(prepared: &mut PreparedScene<f32>) -> Self {
         let mut data = SceneData {
             spheres: prepared.opaque.iter().chain(&prepared.two_root).copied().collect(),
             records: prepared.records.iter().map(|row| row.0).collect(),
-            scene_index: prepared.scene_index.clone(),
             nodes: vec![[0; 4]],
             node_count: 0,
         };
-        let Some(hierarchy) = &prepared.hierarchy else { return data };
-        let built = WideBvh::build(prepared.spheres_of_hierarchy(job), prepared.origin);
-        data.spheres = in_order(&built.order, &data.spheres);
-        data.records = in_order(&built.order, &data.records);
-        data.scene_index = in_order(&built.order, &data.scene_index);
-        data.node_count = built.node_count() as u32;
-        data.nodes = built.rows();
-        data.nodes.extend(in_order(&built.order, &hierarchy.ranks).chunks(4).map(|four| {
+        let Some(hierarchy) = &mut prepared.hierarchy else { return data };
+        let nodes = hierarchy.wide.take().map_or_else(Vec::new, |wide| wide.nodes);
+        data.node_count = nodes.len() as u32;
+        data.nodes = bytemuck::allocation::cast_vec(nodes);
+        data.nodes.extend(hierarchy.ranks.chunks(4).map(|four| {
             let mut places = [0; 4];
             places[..four.len()].copy_from_slice(four);
             places
@@ -65,12 +58,6 @@ impl SceneData {
             ("nodes", Cow::Borrowed(bytemuck::cast_slice(&self.nodes))),
         ]
     }
-}
-
-/// The items in leaf order, then those of the anchored spheres.
-fn in_order<T: Copy>(order: &[u32], items: &[T]) -> Vec<T> {
-    let listed = order.iter().map(|place| items[*place as usize]);
-    listed.chain(items[order.len()..].iter().copied()).collect()
 }
 
 /// Loop turns that a thread of a dispatch may take over all its loops, not counting its last ray. After that, the
@@ -111,8 +98,8 @@ pub struct Exported {
 impl Exported {
     /// Prepares a job.
     pub fn new(job: &RenderJob) -> Self {
-        let prepared = PreparedScene::<f32>::new(job);
-        let data = SceneData::new(job, &prepared);
+        let mut prepared = PreparedScene::<f32>::wide(job);
+        let data = SceneData::new(&mut prepared);
         let features = prepared.features;
         Exported {
             features,
@@ -120,7 +107,7 @@ impl Exported {
             turns_over_lists: turns_over_lists(&features, &prepared),
             block_limit: prepared.block_limit,
             origin: prepared.origin,
-            scene_index: data.scene_index,
+            scene_index: prepared.scene_index,
         }
     }
 }
@@ -137,8 +124,8 @@ mod tests {
     #[test]
     fn each_sphere_has_its_record_and_its_rank() {
         let job = Recipe::find("field:500").unwrap().job().unwrap();
-        let prepared = PreparedScene::<f32>::new(&job);
-        let data = SceneData::new(&job, &prepared);
+        let mut prepared = PreparedScene::<f32>::wide(&job);
+        let data = SceneData::new(&mut prepared);
         for (sphere, record) in data.spheres.iter().zip(&data.records) {
             assert_eq!(sphere[..3], record[..3], "the centre");
         }
@@ -146,10 +133,9 @@ mod tests {
         // They fill whole rows of four.
         assert_eq!(ranks.len(), data.spheres.len().next_multiple_of(4));
         ranks.truncate(data.spheres.len());
-        let places = &prepared.hierarchy.as_ref().unwrap().ranks;
-        for (rank, index) in ranks.iter().zip(&data.scene_index) {
-            let place = prepared.scene_index.iter().position(|other| other == index).unwrap();
-            assert_eq!(*rank, places[place]);
+        let list = PreparedScene::<f32>::as_list(&job).scene_index;
+        for (rank, index) in ranks.iter().zip(&prepared.scene_index) {
+            assert_eq!(list[*rank as usize], *index);
         }
         ranks.sort_unstable();
         assert!(ranks.into_iter().eq(0..data.spheres.len() as u32), "each rank once");

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
-/// What is wrong with a scene: the value, its limit and a remedy.
+/// An error in a scene: the value, its limit and a remedy.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{0}")]
 pub struct SceneError(pub String);

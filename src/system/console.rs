@@ -5,13 +5,27 @@
 
 use anyhow::{Result, anyhow};
 use std::borrow::Cow;
+use std::fs::File;
 use std::io::{self, Write};
+use std::sync::{Mutex, PoisonError};
+
+/// Standard error while [`foreign`](super::foreign) redirects it.
+static STANDARD_ERROR: Mutex<Option<File>> = Mutex::new(None);
+
+/// Sends the program's messages to `file` instead of standard error, or back.
+#[cfg(target_os = "linux")]
+pub(super) fn set_standard_error(file: Option<File>) {
+    *STANDARD_ERROR.lock().unwrap_or_else(PoisonError::into_inner) = file;
+}
 
 /// Prints lines to standard error, without control characters. Failures are ignored.
 pub fn note(text: &str) {
     let text = harmless(text.trim_end_matches('\n')) + "\n";
-    let mut stderr = io::stderr().lock();
-    let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
+    let write = |to: &mut dyn Write| to.write_all(text.as_bytes()).and_then(|()| to.flush());
+    let _ = match &mut *STANDARD_ERROR.lock().unwrap_or_else(PoisonError::into_inner) {
+        Some(file) => write(file),
+        None => write(&mut io::stderr().lock()),
+    };
 }
 
 /// Prints a result for a person to standard output, without control characters.
@@ -37,7 +51,7 @@ pub fn write_out(text: &str) -> Result<()> {
 }
 
 /// Makes a name from outside safe to print as part of one line: control characters, line ends and marks that change the
-/// writing direction become `\u{1b}` and the like.
+/// writing direction become escapes such as `\u{1b}`.
 pub fn printable(name: &str) -> Cow<'_, str> {
     let steers = |c: char| {
         c.is_control()

@@ -7,16 +7,55 @@
 use indicatif::DecimalBytes;
 use std::fs;
 
-/// Something needs more memory than this machine has.
+/// Something needs more memory than there is.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
-#[error("{what} needs {} of memory, but only {} is free; {remedy}", words(*needed_bytes), words(*free_bytes))]
+#[error("{what} needs {} of memory, but {}{remedy}", words(*needed_bytes), room.text())]
 pub struct MemoryError {
-    /// What the memory is for.
+    /// The purpose of the memory.
     pub what: String,
     /// Bytes needed, including what the rest of the program takes.
     pub needed_bytes: u64,
-    pub free_bytes: u64,
+    pub room: Room,
     pub remedy: &'static str,
+}
+
+/// Memory that can still be allocated, and the limit that is reached first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Room {
+    pub bytes: u64,
+    pub limit: Limit,
+}
+
+/// A limit on the program's memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Limit {
+    /// The memory of this machine.
+    Machine,
+    /// That of a control group: of a container, a service or a batch job.
+    Group,
+    /// That of `ulimit -v`, on address space.
+    AddressSpace,
+    /// That of `ulimit -d`, on data.
+    Data,
+    /// A limit that the system does not report.
+    Unknown,
+}
+
+impl Room {
+    fn text(self) -> String {
+        let bytes = words(self.bytes);
+        match self.limit {
+            Limit::Machine => format!("only {bytes} is free; "),
+            Limit::Group => {
+                format!(
+                    "its control group (container, service or job) has only {bytes} left; raise the group's limit, or "
+                )
+            }
+            Limit::AddressSpace => format!("ulimit -v leaves only {bytes}; raise that limit, or "),
+            Limit::Data => format!("ulimit -d leaves only {bytes}; raise that limit, or "),
+            Limit::Unknown => "the system refuses it; ".to_owned(),
+        }
+    }
 }
 
 /// A number of bytes with a unit.
@@ -38,18 +77,18 @@ pub fn check(what: impl FnOnce() -> String, bytes: u64, remedy: &'static str) ->
     if bytes < SMALL_BYTES {
         return Ok(());
     }
-    free_bytes().map_or(Ok(()), |free| check_against(what, bytes, free, remedy))
+    room().map_or(Ok(()), |room| check_against(what, bytes, room, remedy))
 }
 
 fn check_against(
     what: impl FnOnce() -> String,
     bytes: u64,
-    free_bytes: u64,
+    room: Room,
     remedy: &'static str,
 ) -> Result<(), MemoryError> {
     let needed_bytes = bytes.saturating_add(BASE_BYTES);
-    if needed_bytes > free_bytes {
-        return Err(MemoryError { what: what(), needed_bytes, free_bytes, remedy });
+    if needed_bytes > room.bytes {
+        return Err(MemoryError { what: what(), needed_bytes, room, remedy });
     }
     Ok(())
 }
@@ -68,16 +107,42 @@ pub fn zeroed<T: bytemuck::Zeroable>(
     bytemuck::allocation::try_zeroed_vec(count).map_err(|()| MemoryError {
         what: what(),
         needed_bytes: bytes,
-        free_bytes: free_bytes().unwrap_or(0),
+        // If what is known leaves room, something else is in the way.
+        room: room().filter(|room| room.bytes < bytes).unwrap_or(Room { bytes: 0, limit: Limit::Unknown }),
         remedy,
     })
 }
 
-/// Available bytes: the least of what the system and the limits of the process's control groups allow. `None` if the
-/// system does not tell.
-pub fn free_bytes() -> Option<u64> {
-    let of_linux = fs::read_to_string("/proc/meminfo").ok().and_then(|text| available(&text));
-    [of_linux, of_other_systems(), free_of_groups()].into_iter().flatten().min()
+/// The least of what the machine, the process's control groups and its own limits allow. `None` if the system does not
+/// tell.
+pub fn room() -> Option<Room> {
+    let of_linux = fs::read_to_string("/proc/meminfo").ok().and_then(|text| in_bytes(&text, "MemAvailable:"));
+    let [address_space, data] = left_by_limits();
+    let rooms = [
+        (Limit::Machine, of_linux),
+        (Limit::Machine, of_other_systems()),
+        (Limit::Group, free_of_groups()),
+        (Limit::AddressSpace, address_space),
+        (Limit::Data, data),
+    ];
+    let known = rooms.into_iter().filter_map(|(limit, bytes)| Some(Room { bytes: bytes?, limit }));
+    known.min_by_key(|room| room.bytes)
+}
+
+/// What `ulimit -v` and `ulimit -d` leave of the process's address space and data.
+#[cfg(target_os = "linux")]
+fn left_by_limits() -> [Option<u64>; 2] {
+    use rustix::process::{Resource, getrlimit};
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    [(Resource::As, "VmSize:"), (Resource::Data, "VmData:")].map(|(resource, used)| {
+        let limit = getrlimit(resource).current?;
+        Some(limit.saturating_sub(in_bytes(&status, used).unwrap_or(0)))
+    })
+}
+
+#[cfg(not(target_os = "linux"))]
+fn left_by_limits() -> [Option<u64>; 2] {
+    [None; 2]
 }
 
 #[cfg(any(windows, target_vendor = "apple"))]
@@ -92,9 +157,9 @@ fn of_other_systems() -> Option<u64> {
     None
 }
 
-/// The value of the line `MemAvailable:  2048 kB`, in bytes.
-fn available(meminfo: &str) -> Option<u64> {
-    let line = meminfo.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+/// The value of a line such as `MemAvailable:  2048 kB` of a file in `/proc`, in bytes.
+fn in_bytes(text: &str, name: &str) -> Option<u64> {
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 
@@ -125,10 +190,17 @@ mod tests {
 
     #[test]
     fn too_much_is_refused_with_the_numbers_and_a_remedy() {
-        let check = |bytes, free| check_against(|| "a film".to_owned(), bytes, free, "do less");
+        let of = |limit| move |bytes| Room { bytes, limit };
+        let check =
+            |bytes, free| check_against(|| "a film".to_owned(), bytes, of(Limit::Machine)(free), "do less");
         let message = check(14_000_000_000, 8_000_000_000).unwrap_err().to_string();
         assert_eq!(message, "a film needs 14.07 GB of memory, but only 8.00 GB is free; do less");
         assert!(check(u64::MAX, u64::MAX - 1).is_err());
+        for (limit, name) in [(Limit::AddressSpace, "ulimit -v"), (Limit::Group, "control group")] {
+            let refused = check_against(|| "a film".to_owned(), 9, of(limit)(5_000_000), "do less");
+            let message = refused.unwrap_err().to_string();
+            assert!(message.contains(name) && message.contains("5.00 MB"), "{message}");
+        }
         let rest = (9 << 30) - BASE_BYTES;
         assert_eq!(check(rest, 9 << 30), Ok(()));
         assert!(check(rest + 1, 9 << 30).is_err(), "the program needs the rest");
@@ -154,7 +226,8 @@ mod tests {
         assert_eq!(free("1000\n", "anon 5\nactive_file 150\ninactive_file 50\n"), Some(500));
         assert_eq!(free("100\n", "active_file 0\n"), Some(0));
         assert_eq!(free("max\n", ""), None);
-        assert_eq!(available("MemTotal: 9 kB\nMemAvailable:    2048 kB\n"), Some(2 << 20));
-        assert_eq!(available("nothing"), None);
+        let meminfo = "MemTotal: 9 kB\nMemAvailable:    2048 kB\n";
+        assert_eq!(in_bytes(meminfo, "MemAvailable:"), Some(2 << 20));
+        assert_eq!(in_bytes("nothing", "MemAvailable:"), None);
     }
 }

@@ -4,6 +4,7 @@ pub mod clock;
 pub mod console;
 pub mod failure;
 pub mod files;
+pub mod foreign;
 pub mod interrupt;
 pub mod journal;
 pub mod memory;

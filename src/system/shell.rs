@@ -1,6 +1,7 @@
 //! Words of a command as a shell takes them.
 
 use std::borrow::Cow;
+use std::ffi::OsStr;
 
 /// Which quotes a command gets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,7 +13,7 @@ pub enum Shell {
 }
 
 impl Shell {
-    /// What people type into on this system.
+    /// The shell of this system.
     pub const HERE: Shell = if cfg!(windows) { Shell::Windows } else { Shell::Posix };
 
     /// Quotes a word if necessary.
@@ -37,9 +38,26 @@ impl Shell {
     }
 
     /// Joins words into a command line.
-    pub fn line<W: AsRef<str>>(self, words: impl IntoIterator<Item = W>) -> String {
-        words.into_iter().map(|word| self.quoted(word.as_ref()).into_owned()).collect::<Vec<_>>().join(" ")
+    pub fn line<W: AsRef<OsStr>>(self, words: impl IntoIterator<Item = W>) -> String {
+        let quoted = |word: &OsStr| match word.to_str() {
+            Some(word) => self.quoted(word).into_owned(),
+            None => with_bytes(word),
+        };
+        words.into_iter().map(|word| quoted(word.as_ref())).collect::<Vec<_>>().join(" ")
     }
+}
+
+/// A word that is not UTF-8, in the quotes of bash and zsh in which bytes have numbers.
+#[cfg(unix)]
+fn with_bytes(word: &OsStr) -> String {
+    use std::os::unix::ffi::OsStrExt;
+    format!("$'{}'", word.as_bytes().escape_ascii())
+}
+
+/// No shell of Windows can name such a word.
+#[cfg(not(unix))]
+fn with_bytes(word: &OsStr) -> String {
+    Shell::HERE.quoted(&word.to_string_lossy()).into_owned()
 }
 
 /// A path that no program takes for a flag: `./` comes before a leading dash.
@@ -57,6 +75,18 @@ mod tests {
         let line = Shell::Posix.line(words);
         assert_eq!(shlex::split(&line).unwrap(), words);
         assert!(line.starts_with("weekender --size=8x4 ") && line.ends_with(" -1,2,3"), "{line}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn bytes_that_are_not_utf_8_survive_bash() {
+        use std::os::unix::ffi::OsStrExt;
+        let word = OsStr::from_bytes(b"K\xf6ln it's\\a.exr");
+        let line = Shell::Posix.line([OsStr::new("printf"), OsStr::new("%s"), word]);
+        match std::process::Command::new("bash").args(["-c", &line]).output() {
+            Ok(output) => assert_eq!(output.stdout, word.as_bytes(), "{line}"),
+            Err(error) => eprintln!("bash was not run: {error}"),
+        }
     }
 
     #[test]

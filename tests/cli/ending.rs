@@ -1,4 +1,4 @@
-//! What ends a render.
+//! The ends of a render.
 
 use super::common::{json, temp};
 

@@ -1,6 +1,7 @@
 //! Outputs: what is written where, and which ones are refused.
 
 use super::common::{ends, film, json_file, names, refused, refused_in, render, succeeds, temp};
+use crate::program_common::{outcome, weekender};
 use serde_json::Value;
 
 #[test]
@@ -121,5 +122,17 @@ fn only_what_may_need_a_gpu_looks_for_one() {
         succeeds(directory.path(), &[arguments, &["--log", "run.log"]].concat());
         let log = std::fs::read_to_string(directory.path().join("run.log")).unwrap();
         assert!(!log.contains("found "), "{arguments:?}: {log}");
+    }
+}
+
+/// As on a server: graphics libraries then print errors that read as the program's.
+#[test]
+fn libraries_print_nothing() {
+    let directory = temp();
+    for arguments in [&["--list"][..], &["--batch", "--size", "16x9", "--samples", "1", "--out", "a.png"]] {
+        let mut command = weekender(directory.path(), arguments);
+        command.env_remove("XDG_RUNTIME_DIR");
+        let (code, _, message) = outcome(&command.output().unwrap());
+        assert_eq!((code, message.as_str()), (Some(0), ""), "{arguments:?}");
     }
 }

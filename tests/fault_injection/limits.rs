@@ -91,3 +91,37 @@ fn second_run_on_a_film_is_refused_until_the_first_ends() {
     assert_eq!(code, Some(0), "{message}");
     assert_eq!(names(at), ["b.png", "g.exr", "h.exr"]);
 }
+
+/// A rename that is not on the disk can be undone by a power cut, after the program has announced the file.
+#[test]
+fn the_directory_is_synced_after_each_rename() {
+    let at = TempDir::new().unwrap();
+    let at = fs::canonicalize(at.path()).unwrap();
+    let mut strace = Command::new("strace");
+    strace.args([
+        "-f",
+        "-y",
+        "-e",
+        "trace=fsync,rename,renameat,renameat2,linkat,link,mkdir",
+        "-o",
+        "trace",
+        PROGRAM,
+    ]);
+    strace.args(PICTURE).args(["off", "--samples", "2", "--checkpoint", "g.exr", "--out", "g.png"]);
+    match strace.current_dir(&at).output() {
+        Ok(output) => assert!(output.status.success(), "{}", text(&output.stderr)),
+        Err(error) => return eprintln!("strace was not run ({error}): nothing was tested"),
+    }
+    let trace = fs::read_to_string(at.join("trace")).unwrap();
+    let synced = format!("<{}>)", at.display());
+    let mut is_due = false;
+    for line in trace.lines().filter(|line| !line.contains("unfinished") && !line.contains("ENOENT")) {
+        if line.contains("rename") || line.contains("link") {
+            assert!(!is_due, "{trace}");
+            is_due = true;
+        } else if line.contains("fsync") && line.contains(&synced) {
+            is_due = false;
+        }
+    }
+    assert!(!is_due && trace.contains("fsync") && trace.contains("g.exr"), "{trace}");
+}

@@ -1,8 +1,11 @@
 //! Helpers that the GPU tests share.
 #![allow(dead_code, reason = "each test uses some of it")]
 
+#[path = "../skip_common/mod.rs"]
+mod skip_common;
+
+pub use skip_common::skip;
 use std::cell::RefCell;
-use std::io::Write;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use weekender::film::Film;
@@ -35,19 +38,26 @@ pub fn gpu(options: GpuOptions) -> Option<GpuRenderer> {
     let adapter = std::env::var("WEEKENDER_TEST_ADAPTER").ok();
     match GpuRenderer::new(GpuOptions { adapter, allow_software: true, ..options }) {
         Ok(renderer) => Some(renderer),
-        Err(GpuError::None) if std::env::var("WEEKENDER_REQUIRE_GPU").as_deref() != Ok("1") => {
-            say_loudly("no graphics adapter: nothing was tested");
+        Err(GpuError::None) => {
+            skip_without_adapter();
             None
         }
         Err(error) => panic!("{error}"),
     }
 }
 
-/// Prints that something was not tested, bypassing the test harness, which hides the output of passing tests.
-pub fn say_loudly(text: &str) {
-    let test = std::thread::current().name().unwrap_or("a test").to_owned();
-    let line = format!("\nNOT TESTED: {test}: {text}\n");
-    std::io::stderr().write_all(line.as_bytes()).unwrap();
+/// Whether there is an adapter, even a software one. If not, prints a message, and fails under
+/// `WEEKENDER_REQUIRE_GPU=1`.
+pub fn has_adapter() -> bool {
+    let has_one = !weekender::render_gpu::adapters().is_empty();
+    if !has_one {
+        skip_without_adapter();
+    }
+    has_one
+}
+
+fn skip_without_adapter() {
+    skip("GPU", "no graphics adapter");
 }
 
 /// A flag that cancels nothing.

@@ -20,7 +20,7 @@ fn file(name: &str) -> PathBuf {
 
 fn picture(name: &str) -> Picture {
     let encoding = Encoding::Book(Transfer::Linear);
-    Picture::read(&file(name), encoding).unwrap_or_else(|error| panic!("{name}: {error}"))
+    Picture::read(&file(name), Some(encoding)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 fn compared(a: &str, b: &str) -> Comparison {
@@ -28,7 +28,7 @@ fn compared(a: &str, b: &str) -> Comparison {
 }
 
 fn refusal(name: &str) -> String {
-    Picture::read(&file(name), Encoding::Srgb).unwrap_err().to_string()
+    Picture::read(&file(name), Some(Encoding::Srgb)).unwrap_err().to_string()
 }
 
 #[test]
@@ -269,4 +269,74 @@ fn a_pfm_may_have_any_line_end_scale_and_order() {
         let message = read(&format!("PF 1 1 {scale}\n"), &little).unwrap_err();
         assert!(message.contains("its scale is") && message.contains("-1.0"), "{message}");
     }
+}
+
+/// Bytes of a grey ramp in a PNG with these chunks before its pixels.
+fn png_with(chunks: &[(png::chunk::ChunkType, &[u8])], stored: impl Fn(f64) -> f64) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 64, 48);
+    encoder.set_color(png::ColorType::Rgb);
+    let mut writer = encoder.write_header().unwrap();
+    chunks.iter().for_each(|(name, data)| writer.write_chunk(*name, data).unwrap());
+    let pixel = |index: u32| [(255.0 * stored(ramp(index))).round() as u8; 3];
+    writer.write_image_data((0..64 * 48).map(pixel).collect::<Vec<_>>().as_flattened()).unwrap();
+    drop(writer);
+    bytes
+}
+
+fn ramp(index: u32) -> f64 {
+    0.05 + 0.9 * f64::from(index % 64) / 64.0
+}
+
+#[test]
+fn what_a_png_says_about_its_colours_is_used_or_noted() {
+    use png::chunk::{ChunkType, cHRM, cICP, gAMA, sRGB};
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("a.png");
+    let read = |chunks: &[(ChunkType, &[u8])], stored: &dyn Fn(f64) -> f64, encoding: Option<Encoding>| {
+        std::fs::write(&path, png_with(chunks, stored)).unwrap();
+        Picture::read(&path, encoding).unwrap()
+    };
+    let is_right = |picture: &Picture| {
+        let values = (0..64 * 48).map(|index| (picture.pixels[index as usize][0], ramp(index)));
+        values.filter(|(found, _)| found.is_finite()).all(|(found, wanted)| (found - wanted).abs() < 0.02)
+    };
+    let gamma = |gamma: f64| ((100_000.0 * gamma).round() as u32).to_be_bytes();
+    let srgb = |x: f64| Encoding::Srgb.displayed(x, 0, 1);
+    let (linear, square, other) = (|x: f64| x, f64::sqrt, |x: f64| x.powf(1.0 / 1.8));
+    let stated: [(&[(ChunkType, &[u8])], &dyn Fn(f64) -> f64); 7] = [
+        (&[(sRGB, &[0])], &srgb),
+        (&[(gAMA, &gamma(1.0 / 2.2))], &srgb),
+        (&[(gAMA, &gamma(1.0))], &linear),
+        (&[(gAMA, &gamma(0.5))], &square),
+        (&[(gAMA, &gamma(1.0 / 1.8))], &other),
+        (&[(cICP, &[1, 13, 0, 1]), (gAMA, &gamma(1.0))], &srgb),
+        (&[(cICP, &[1, 8, 0, 1])], &linear),
+    ];
+    for (chunks, stored) in stated {
+        let picture = read(chunks, stored, None);
+        assert!(is_right(&picture), "{chunks:?}");
+        assert!(
+            picture.notes.iter().any(|note| note.contains("it says that its values are")),
+            "{:?}",
+            picture.notes
+        );
+        // A flag says more than the file.
+        let picture = read(chunks, &square, Some(Encoding::Book(Transfer::Gamma2)));
+        assert!(is_right(&picture) && picture.notes.is_empty(), "{chunks:?}: {:?}", picture.notes);
+    }
+    let primaries: Vec<u8> = [31_270_u32, 32_900, 70_800, 29_200, 17_000, 79_700, 13_100, 4600]
+        .into_iter()
+        .flat_map(u32::to_be_bytes)
+        .collect();
+    let noted: [(&[(ChunkType, &[u8])], &str); 3] = [
+        (&[(cICP, &[9, 16, 0, 1])], "PQ"),
+        (&[(cICP, &[12, 13, 0, 1])], "Display P3"),
+        (&[(cHRM, &primaries)], "its colours are not those of sRGB"),
+    ];
+    for (chunks, part) in noted {
+        let notes = read(chunks, &square, None).notes;
+        assert!(notes.iter().any(|note| note.contains(part)), "{part}: {notes:?}");
+    }
+    assert!(is_right(&read(&[], &square, None)), "without such a chunk, values are the book's");
 }

@@ -92,3 +92,41 @@ fn check_reads_standard_input_and_fifos() {
         assert_eq!(found.status.code(), Some(0), "{}", text(&found.stderr));
     }
 }
+
+/// A read-only system without a directory for temporary files, as containers are.
+#[cfg(target_os = "linux")]
+#[test]
+fn streams_need_no_temporary_directory() {
+    let at = tempfile::tempdir().unwrap();
+    let at = at.path();
+    let run = |line: &str| {
+        let line = line.replace("weekender", program_common::PROGRAM);
+        let output =
+            Command::new("bash").args(["-c", &line]).current_dir(at).env("TMPDIR", "/nowhere").output();
+        output.unwrap()
+    };
+    for format in ["png", "ppm", "exr", "pfm"] {
+        let render = "weekender --batch --device cpu --stage metal --size 64x36 --samples 16 --out -";
+        let rendered = run(&format!("{render} --format {format} > a.{format}"));
+        assert_eq!(rendered.status.code(), Some(0), "{format}: {}", text(&rendered.stderr));
+    }
+    for line in [
+        "weekender check - < a.ppm",
+        "weekender compare - a.exr < a.exr",
+        "weekender compare <(cat a.exr) a.exr",
+        "weekender info - < a.png",
+    ] {
+        let found = run(line);
+        assert_eq!(found.status.code(), Some(0), "{line}: {}{}", text(&found.stdout), text(&found.stderr));
+    }
+    let closed = run(
+        "weekender --batch --device cpu --stage metal --size 64x36 --samples 1 --out - --format ppm > /dev/full",
+    );
+    let message = text(&closed.stderr);
+    assert!(
+        message.contains("cannot write standard output") && !message.contains("directory first"),
+        "{message}"
+    );
+    let missing = run("weekender compare - a.exr <&-");
+    assert!(text(&missing.stderr).contains("cannot read standard input"), "{}", text(&missing.stderr));
+}

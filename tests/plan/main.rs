@@ -10,3 +10,5 @@ mod parts;
 mod program_common;
 mod refused;
 mod scripts;
+#[path = "../skip_common/mod.rs"]
+mod skip_common;

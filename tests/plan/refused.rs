@@ -116,3 +116,18 @@ fn invalid_plans_and_merges_are_refused() {
     let (_, message) = ends(at, 1, &["merge", "p", "--out", "x.exr"]);
     assert!(message.contains("part-0.exr is missing") && !at.join("x.exr").exists(), "{message}");
 }
+
+/// As editors of Windows and git's `autocrlf` change text files.
+#[test]
+fn line_ends_and_a_byte_order_mark_change_no_plan() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    plan(at, "p", &["--samples", "4", "--parts", "2"]);
+    for name in ["p/plan.json", "p/scene.toml"] {
+        let text = fs::read_to_string(at.join(name)).unwrap();
+        fs::write(at.join(name), format!("\u{feff}{}", text.replace('\n', "\r\n"))).unwrap();
+    }
+    render_part(at, "p", 0);
+    assert!(render_part(at, "p", 0).contains("whole"));
+    plan(at, "p", &["--samples", "4", "--parts", "2"]);
+}

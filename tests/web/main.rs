@@ -8,9 +8,6 @@ mod gpu_common;
 mod page;
 mod session;
 
-/// Says that something was not tested, or fails where `WEEKENDER_REQUIRE_BROWSER=1` is set.
 fn skip(reason: &str) {
-    let is_required = std::env::var("WEEKENDER_REQUIRE_BROWSER").as_deref() == Ok("1");
-    assert!(!is_required, "{reason}");
-    gpu_common::say_loudly(reason);
+    gpu_common::skip("BROWSER", reason);
 }

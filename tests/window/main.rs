@@ -9,6 +9,8 @@ mod extreme;
 mod faults;
 mod files;
 mod first_steps;
+#[path = "../gpu_common/mod.rs"]
+mod gpu_common;
 mod kept;
 mod moving;
 mod objects;

@@ -137,7 +137,7 @@ impl Ask for Window {
     }
 
     fn disabled_reason(&self, command: Command) -> Option<String> {
-        self.facts().disabled_reason(command)
+        self.snapshot().disabled_reason(command)
     }
 
     fn performed(&self) -> Option<Command> {

@@ -1,6 +1,7 @@
 //! Snapshots of the whole window. `UPDATE_SNAPSHOTS=1` takes them anew; look at them before you commit them.
 
 use crate::common::{has_samples, middle, send, until, window};
+use crate::gpu_common::has_adapter;
 use crate::objects::{click, middle_sphere, on_screen, spheres};
 use crate::questions::Ask as _;
 use eframe::egui::{self, Key, Modifiers};
@@ -12,6 +13,9 @@ type Act = fn(&mut Harness<'static, Window>);
 
 /// A picture of the whole window after `act`. Numbers that change from run to run are covered.
 fn snapshot(name: &str, theme: Theme, size: [f32; 2], scale: f32, act: Act) {
+    if !has_adapter() {
+        return;
+    }
     let mut harness = Harness::builder()
         .with_size(size)
         .with_pixels_per_point(scale)

@@ -1,6 +1,7 @@
 //! Two pictures on the two sides of a divider, and their difference.
 
 use crate::common::{drag_from, has_samples, open, send, until, window};
+use crate::gpu_common::has_adapter;
 use crate::questions::Ask as _;
 use eframe::egui::{Pos2, vec2};
 use egui_kittest::Harness;
@@ -16,6 +17,9 @@ fn colour_at(harness: &mut Harness<'_, Window>, at: Pos2) -> [u8; 3] {
 /// Against an earlier stage, and against a picture that was kept.
 #[test]
 fn the_traced_picture_is_right_of_the_divider() {
+    if !has_adapter() {
+        return;
+    }
     let mut harness =
         Harness::builder().with_size([1000.0, 700.0]).with_step_dt(1.0 / 60.0).wgpu().build_ui_state(
             |ui, window: &mut Window| window.ui_in(ui),

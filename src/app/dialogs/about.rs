@@ -1,9 +1,9 @@
 //! The dialog about the program.
 
-use super::Outcome;
-use crate::app::facts::Facts;
+use super::outcome::Outcome;
+use crate::app::commands::Snapshot;
 use crate::app::model::{adapter, file_url};
-use crate::app::widgets::{Header, fold, hint, tip};
+use crate::app::toolkit::widgets::{Header, fold, hint, tip};
 use crate::system::files::state_directory;
 use crate::system::journal::kept_text;
 use eframe::egui::{self, OpenUrl, RichText, ScrollArea, Ui};
@@ -14,7 +14,7 @@ const LICENCES: &str = concat!(
     include_str!("../../../LICENSE-MIT")
 );
 
-pub(super) fn ui(ui: &mut Ui, facts: &Facts) -> Outcome {
+pub(super) fn ui(ui: &mut Ui, snapshot: &Snapshot) -> Outcome {
     ui.heading(version());
     hint(
         ui,
@@ -35,7 +35,7 @@ pub(super) fn ui(ui: &mut Ui, facts: &Facts) -> Outcome {
         let copy = ui.button("Copy for a report");
         let help = "Version, processor, graphics card and log, without names of your files";
         if tip(ui, copy, help, None).clicked() {
-            ui.ctx().copy_text(report(facts));
+            ui.ctx().copy_text(report(snapshot));
         }
         is_closed = ui.button("Close").clicked();
     });
@@ -46,8 +46,8 @@ fn version() -> String {
     format!("Weekender {}", env!("CARGO_PKG_VERSION"))
 }
 
-fn report(facts: &Facts) -> String {
-    let backend = facts.status.backend.as_ref();
+fn report(snapshot: &Snapshot) -> String {
+    let backend = snapshot.status.backend.as_ref();
     let processor =
         backend.map_or_else(|| "unknown".to_owned(), |info| format!("{} {}", info.name, info.device));
     let graphics = adapter().map_or_else(|reason| reason, |adapter| adapter.name.clone());

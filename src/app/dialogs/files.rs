@@ -1,14 +1,12 @@
 //! Dialogs about files: saving, the system's own dialog, and a field for a path where the system has none.
 
-use super::Outcome;
-use crate::app::answers::Answers;
-use crate::app::facts::Facts;
+use super::outcome::{Outcome, Purpose, What};
+use crate::app::commands::Snapshot;
 use crate::app::model::Document;
-use crate::app::status::time;
-use crate::app::theme;
-use crate::app::widgets::{About, FIELD, Number, named, primary, small};
+use crate::app::panels::status::time;
+use crate::app::toolkit::widgets::{About, FIELD, Number, named, primary, small};
+use crate::app::toolkit::{Answers, theme};
 use crate::film::Film;
-use crate::job::output::OutputFormat;
 use crate::job::recipe::plain_name;
 use crate::job::render::SIZE_LIMIT;
 use crate::progressive::{Phase, Status};
@@ -18,59 +16,6 @@ use eframe::egui::text::{CCursor, CCursorRange};
 use eframe::egui::{self, Align, Key, Label, Layout, Stroke, TextEdit, Ui};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-
-/// What is saved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum What {
-    Picture(OutputFormat),
-    Scene,
-}
-
-impl What {
-    /// All of them, with name, use and ending.
-    const ALL: [(What, &str, &str, &str); 5] = [
-        (What::Picture(OutputFormat::Png), "PNG picture", "To look at; remembers how it was made", "png"),
-        (What::Picture(OutputFormat::P6), "PPM picture (P6)", "The format of the book", "ppm"),
-        (What::Picture(OutputFormat::Pfm), "PFM picture", "Linear numbers for other programs", "pfm"),
-        (What::Picture(OutputFormat::Exr), "Film (EXR)", "All light and samples; can go on later", "exr"),
-        (What::Scene, "Scene (TOML)", "Text to edit; no picture in it", "toml"),
-    ];
-
-    fn ending(self) -> &'static str {
-        What::ALL.into_iter().find(|(what, ..)| *what == self).map_or("", |(_, _, _, ending)| ending)
-    }
-}
-
-/// What a file or a folder is chosen for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
-    Open,
-    /// To check the picture of the user's own program.
-    Check,
-    /// The folder in which the dialog of saving saves.
-    Folder,
-}
-
-impl Purpose {
-    fn title(self) -> &'static str {
-        match self {
-            Purpose::Open => "Open",
-            Purpose::Check => "Check my picture",
-            Purpose::Folder => "Folder",
-        }
-    }
-
-    /// Opens the system's dialog, and blocks until it is closed.
-    fn choose(self, from: &Path) -> Option<PathBuf> {
-        let dialog = rfd::FileDialog::new().set_title(self.title()).set_directory(from);
-        let endings: &[&str] = match self {
-            Purpose::Open => &["png", "ppm", "exr", "toml"],
-            Purpose::Check => &["png", "ppm"],
-            Purpose::Folder => return dialog.pick_folder(),
-        };
-        dialog.add_filter(endings.join(", "), endings).pick_file()
-    }
-}
 
 /// The system's file dialog.
 #[derive(Default)]
@@ -101,7 +46,7 @@ impl System {
         let choose = move || {
             let begin = Instant::now();
             // The system shows nothing where there is no folder, such as the usual one before the first picture.
-            let path = purpose.choose(from.ancestors().find(|folder| folder.is_dir()).unwrap_or(&from));
+            let path = choose(purpose, from.ancestors().find(|folder| folder.is_dir()).unwrap_or(&from));
             match path {
                 None if begin.elapsed() >= System::SEEN => drop(answer),
                 path => answer.give(Ok((purpose, from, path))),
@@ -205,7 +150,7 @@ impl SaveBox {
         }
     }
 
-    pub(super) fn ui(&mut self, ui: &mut Ui, facts: &Facts, system: &mut System) -> Outcome {
+    pub(super) fn ui(&mut self, ui: &mut Ui, snapshot: &Snapshot, system: &mut System) -> Outcome {
         ui.heading("Save");
         ui.add_space(8.0);
         let field = labelled(ui, "Name", |ui| {
@@ -234,9 +179,9 @@ impl SaveBox {
             for (what, label, help, _) in What::ALL {
                 option(left, &mut self.what, what, label, help);
             }
-            right.add_enabled_ui(self.what != What::Scene, |ui| self.sizes(ui, facts));
+            right.add_enabled_ui(self.what != What::Scene, |ui| self.sizes(ui, snapshot));
         });
-        let (path, shown) = (self.path(), facts.document());
+        let (path, shown) = (self.path(), snapshot.document());
         let size = self.pixels(self.size, shown);
         let (is_replaced, has_folder) = (path.exists(), path.parent().is_none_or(Path::is_dir));
         match has_folder {
@@ -257,7 +202,7 @@ impl SaveBox {
         }
     }
 
-    fn sizes(&mut self, ui: &mut Ui, facts: &Facts) {
+    fn sizes(&mut self, ui: &mut Ui, snapshot: &Snapshot) {
         small(ui, "Size");
         for (size, label) in [
             (Size::Seen, "As you see it"),
@@ -265,9 +210,9 @@ impl SaveBox {
             (Size::Twice, "Twice as large"),
             (Size::Other, "Other"),
         ] {
-            let [width, height] = self.pixels(size, facts.document());
-            let when = match seconds_at(facts, [width, height]) {
-                _ if facts.document().size() == [width, height] => ", ready".to_owned(),
+            let [width, height] = self.pixels(size, snapshot.document());
+            let when = match seconds_at(snapshot.document(), &snapshot.status, [width, height]) {
+                _ if snapshot.document().size() == [width, height] => ", ready".to_owned(),
                 Some(seconds) => format!(", about {}", time(seconds.ceil())),
                 None => String::new(),
             };
@@ -286,6 +231,17 @@ impl SaveBox {
             });
         }
     }
+}
+
+/// Opens the system's dialog, and blocks until it is closed.
+fn choose(purpose: Purpose, from: &Path) -> Option<PathBuf> {
+    let dialog = rfd::FileDialog::new().set_title(purpose.title()).set_directory(from);
+    let endings: &[&str] = match purpose {
+        Purpose::Open => &["png", "ppm", "exr", "toml"],
+        Purpose::Check => &["png", "ppm"],
+        Purpose::Folder => return dialog.pick_folder(),
+    };
+    dialog.add_filter(endings.join(", "), endings).pick_file()
 }
 
 /// A label, and what follows it over the rest of the width, from the right to the left.
@@ -329,9 +285,9 @@ pub fn samples_wanted(document: &Document, status: &Status) -> u64 {
 }
 
 /// About how many seconds the picture takes at this size.
-fn seconds_at(facts: &Facts, [width, height]: [u32; 2]) -> Option<f64> {
-    let speed = Some(facts.status.paths_per_second()).filter(|speed| *speed > 0.0)?;
-    let samples = samples_wanted(facts.document(), &facts.status) as f64;
+fn seconds_at(document: &Document, status: &Status, [width, height]: [u32; 2]) -> Option<f64> {
+    let speed = Some(status.paths_per_second()).filter(|speed| *speed > 0.0)?;
+    let samples = samples_wanted(document, status) as f64;
     Some(f64::from(width) * f64::from(height) * samples / speed)
 }
 
@@ -348,14 +304,15 @@ impl LargeSize {
     const SECONDS: f64 = 300.0;
 
     /// None if the size is harmless.
-    pub fn of(facts: &Facts, size: [u32; 2], before: [u32; 2]) -> Option<Self> {
-        let halves = facts.document().settings.half_count();
+    pub fn of(document: &Document, status: &Status, size: [u32; 2], before: [u32; 2]) -> Option<Self> {
+        let halves = document.settings.half_count();
         // The sums, the picture and its texture.
         let bytes_of = |[width, height]: [u32; 2]| {
             Film::bytes(width, height, halves) + 7 * u64::from(width) * u64::from(height)
         };
-        let (bytes, seconds) = (bytes_of(size), seconds_at(facts, size));
-        let is_slow = |size| seconds_at(facts, size).is_some_and(|seconds| seconds > LargeSize::SECONDS);
+        let (bytes, seconds) = (bytes_of(size), seconds_at(document, status, size));
+        let is_slow =
+            |size| seconds_at(document, status, size).is_some_and(|seconds| seconds > LargeSize::SECONDS);
         if bytes_of(before) >= bytes || bytes <= LargeSize::BYTES && (!is_slow(size) || is_slow(before)) {
             return None;
         }

@@ -1,9 +1,9 @@
 //! The dialog that lists keys and mouse actions.
 
-use super::Outcome;
-use crate::app::command::{ROWS, Row};
-use crate::app::theme;
-use crate::app::widgets::caption;
+use super::outcome::Outcome;
+use crate::app::commands::{ROWS, Row};
+use crate::app::toolkit::theme;
+use crate::app::toolkit::widgets::caption;
 use eframe::egui::{Context, Frame, Margin, RichText, ScrollArea, Sides, Ui};
 
 const GROUPS: [&str; 8] = ["The picture", "Camera", "File", "Edit", "View", "Render", "Stage", "Other"];

@@ -3,28 +3,17 @@
 mod about;
 mod files;
 mod help;
+mod outcome;
 mod palette;
 mod sky;
+pub mod stage_list;
 
-pub use files::{LargeSize, PathField, Purpose, SaveBox, What, default_folder, file_name, samples_wanted};
+pub use files::{LargeSize, PathField, SaveBox, default_folder, file_name, samples_wanted};
+pub use outcome::{Outcome, Purpose, What};
 
-use super::facts::Facts;
-use super::finder::Finder;
-use super::stage_list;
+use crate::app::commands::PanelContext;
+use crate::app::toolkit::Finder;
 use eframe::egui::{self, Align2, Color32, Id, Modal, Ui, vec2};
-use std::path::PathBuf;
-
-/// What happens to a dialog after a frame.
-pub enum Outcome {
-    Stay,
-    Close,
-    /// It closes: the user chose a file.
-    Named(Purpose, PathBuf),
-    /// It closes: this is saved, the picture with this size.
-    Save(What, [u32; 2], PathBuf),
-    /// It closes: the picture gets this size.
-    Size([u32; 2]),
-}
 
 /// The dialog that is open.
 pub enum Dialog {
@@ -65,7 +54,7 @@ impl Dialogs {
     }
 
     /// Draws the dialog. Returns how it closes.
-    pub fn ui(&mut self, ui: &mut Ui, facts: &Facts) -> Outcome {
+    pub fn ui(&mut self, ui: &mut Ui, cx: &PanelContext) -> Outcome {
         let Some(dialog) = self.open.as_mut() else { return Outcome::Stay };
         let room = ui.ctx().content_rect().size();
         // Each kind has its own size.
@@ -80,16 +69,14 @@ impl Dialogs {
         let modal = modal.show(ui.ctx(), |ui| {
             ui.set_max_width((room.x - 64.0).min(512.0));
             match dialog {
-                Dialog::Palette(finder) => {
-                    palette::ui(finder, ui, (room.y - 180.0).clamp(100.0, 360.0), facts)
-                }
+                Dialog::Palette(finder) => palette::ui(finder, ui, (room.y - 180.0).clamp(100.0, 360.0), cx),
                 Dialog::Stages(finder) => {
-                    stage_list::ui(finder, ui, (room.y - 140.0).clamp(160.0, 720.0), facts)
+                    stage_list::ui(finder, ui, (room.y - 140.0).clamp(160.0, 720.0), cx)
                 }
                 Dialog::Help => help::ui(ui, (room.y - 200.0).clamp(100.0, 560.0)),
-                Dialog::Sky => sky::ui(ui, facts),
-                Dialog::About => about::ui(ui, facts),
-                Dialog::Save(save) => save.ui(ui, facts, &mut self.system),
+                Dialog::Sky => sky::ui(ui, cx),
+                Dialog::About => about::ui(ui, cx),
+                Dialog::Save(save) => save.ui(ui, cx, &mut self.system),
                 Dialog::Path(field) => field.ui(ui),
                 Dialog::Large(large) => large.ui(ui),
             }

@@ -1,11 +1,10 @@
 //! Finds a command by what it does: type a few words, then press Enter.
 
-use super::Outcome;
-use crate::app::command::{Command, ROWS};
-use crate::app::facts::Facts;
-use crate::app::finder::Finder;
-use crate::app::menu::{line, name_state};
-use crate::app::widgets::{caption, hint};
+use super::outcome::Outcome;
+use crate::app::commands::{Command, PanelContext, ROWS, Snapshot};
+use crate::app::toolkit::Finder;
+use crate::app::toolkit::menu::{line, name_state};
+use crate::app::toolkit::widgets::{caption, hint};
 use crate::measure::stress::shown_cases;
 use crate::stages::Stage;
 use eframe::egui::{Response, RichText, Ui, vec2};
@@ -57,17 +56,17 @@ struct Found {
 }
 
 /// What a text finds: commands, then places, the best first and what is off last.
-fn found(text: &str, facts: &Facts) -> Vec<Found> {
-    let is_on = |command: &Command| facts.disabled_reason(*command).is_none();
+fn found(text: &str, snapshot: &Snapshot) -> Vec<Found> {
+    let is_on = |command: &Command| snapshot.disabled_reason(*command).is_none();
     let name = |command| match command {
-        Command::Theme(_) => format!("Theme: {}", facts.name(command)),
-        _ => facts.name(command),
+        Command::Theme(_) => format!("Theme: {}", snapshot.name(command)),
+        _ => snapshot.name(command),
     };
     let of = |command, is_place| Found { name: name(command), command, is_place };
     if text.trim().is_empty() {
         return USUAL.into_iter().filter(is_on).map(|command| of(command, false)).collect();
     }
-    let has_rays = facts.no_rays().is_none();
+    let has_rays = snapshot.no_rays().is_none();
     let fields = FIELDS.into_iter().filter(|_| has_rays);
     let listed = ROWS.iter().filter(|row| row.is_listed && row.command != Command::Palette);
     let commands = listed
@@ -76,8 +75,8 @@ fn found(text: &str, facts: &Facts) -> Vec<Found> {
     let stages = Stage::ALL.iter().map(Command::Stage);
     let places = stages
         .chain(shown_cases().iter().map(Command::Extreme))
-        .chain(facts.recent())
-        .chain(facts.bookmarks())
+        .chain(snapshot.recent())
+        .chain(snapshot.bookmarks())
         .map(|command| (command, "", true));
     let mut ranked: Vec<_> = commands
         .chain(places)
@@ -93,7 +92,7 @@ fn found(text: &str, facts: &Facts) -> Vec<Found> {
 }
 
 /// Draws the dialog. The list has the same `height`, however many commands match, so that nothing moves.
-pub(super) fn ui(finder: &mut Finder, ui: &mut Ui, height: f32, facts: &Facts) -> Outcome {
+pub(super) fn ui(finder: &mut Finder, ui: &mut Ui, height: f32, cx: &PanelContext) -> Outcome {
     ui.set_width(ui.available_width());
     let words = (
         "Command",
@@ -105,17 +104,17 @@ pub(super) fn ui(finder: &mut Finder, ui: &mut Ui, height: f32, facts: &Facts) -
         if *is_place && !std::mem::replace(&mut was_place, true) {
             caption(ui, "Stages, scenes, files and bookmarks");
         }
-        let response = row(ui, facts, *command, name, is_chosen);
+        let response = row(ui, cx, *command, name, is_chosen);
         if response.hovered() {
             hovered = Some(*command);
         }
         response
     };
-    let (found, run) = finder.ui(ui, words, height, |text| found(text, facts), draw);
-    about(ui, facts, hovered.or(finder.chosen(&found).map(|found| found.command)));
+    let (found, run) = finder.ui(ui, words, height, |text| found(text, cx), draw);
+    about(ui, cx, hovered.or(finder.chosen(&found).map(|found| found.command)));
     match run {
         Some(run) => {
-            facts.send(found[run].command);
+            cx.send(found[run].command);
             Outcome::Close
         }
         None => Outcome::Stay,
@@ -123,19 +122,19 @@ pub(super) fn ui(finder: &mut Finder, ui: &mut Ui, height: f32, facts: &Facts) -
 }
 
 /// A command, whether it is on, and its keys.
-fn row(ui: &mut Ui, facts: &Facts, command: Command, name: &str, is_chosen: bool) -> Response {
-    let is_enabled = facts.disabled_reason(command).is_none();
-    let [gap, state] = if facts.is_on(command) { ["  ", "on"] } else { ["", ""] };
+fn row(ui: &mut Ui, snapshot: &Snapshot, command: Command, name: &str, is_chosen: bool) -> Response {
+    let is_enabled = snapshot.disabled_reason(command).is_none();
+    let [gap, state] = if snapshot.is_on(command) { ["  ", "on"] } else { ["", ""] };
     let line = line(ui, command, (name, gap, RichText::new(state).strong()), is_chosen);
     let response = ui.add_enabled(is_enabled, line).accessible_name(name);
-    name_state(&response, facts.switch(command));
+    name_state(&response, snapshot.switch(command));
     response
 }
 
 /// What a command does, or why it is disabled. It has two lines, so that nothing moves.
-fn about(ui: &mut Ui, facts: &Facts, command: Option<Command>) {
+fn about(ui: &mut Ui, snapshot: &Snapshot, command: Option<Command>) {
     let text = command.map_or_else(String::new, |command| {
-        facts.disabled_reason(command).unwrap_or_else(|| command.help().to_owned())
+        snapshot.disabled_reason(command).unwrap_or_else(|| command.help().to_owned())
     });
     ui.allocate_ui(vec2(ui.available_width(), 40.0), |ui| {
         ui.set_min_height(40.0);
@@ -147,12 +146,12 @@ fn about(ui: &mut Ui, facts: &Facts, command: Option<Command>) {
 mod tests {
     use super::*;
     use crate::app::Theme;
-    use crate::app::tests::facts_of;
+    use crate::app::tests::snapshot_of;
 
     #[test]
     fn what_is_meant_comes_first() {
-        let facts = facts_of("--stage glass-schlick --size 32x18");
-        let first = |text: &str| found(text, &facts).first().map(|found| found.command);
+        let snapshot = snapshot_of("--stage glass-schlick --size 32x18");
+        let first = |text: &str| found(text, &snapshot).first().map(|found| found.command);
         for (text, expected) in [
             ("dark", Command::Theme(Theme::Dark)),
             ("night", Command::Theme(Theme::Dark)),
@@ -170,11 +169,11 @@ mod tests {
         }
         assert_eq!(first("xyzzy"), None);
         for row in ROWS.iter().filter(|row| row.is_listed && row.command != Command::Palette) {
-            let found = found(row.name, &facts);
-            let is_off = facts.disabled_reason(row.command).is_some();
+            let found = found(row.name, &snapshot);
+            let is_off = snapshot.disabled_reason(row.command).is_some();
             let place = found.iter().position(|found| found.command == row.command);
             assert!(place.is_some_and(|place| is_off || place == 0), "{}: {place:?}", row.name);
         }
-        assert!(!found("", &facts).is_empty());
+        assert!(!found("", &snapshot).is_empty());
     }
 }

@@ -1,6 +1,5 @@
 //! Settings that the window keeps from one run to the next.
 
-use super::Model;
 use super::{Device, Sizing, ViewState, device};
 use crate::scene::Camera;
 use eframe::Storage;
@@ -110,8 +109,7 @@ impl Stored {
         stored.map_or_else(Default::default, |stored| (stored.remembered.mended(), stored.view))
     }
 
-    pub fn write(model: &Model, storage: &mut dyn Storage) {
-        let Model { remembered, view, .. } = model.clone();
+    pub fn write(remembered: Remembered, view: ViewState, storage: &mut dyn Storage) {
         eframe::set_value(storage, Stored::KEY, &Stored { version: Stored::VERSION, remembered, view });
     }
 }

@@ -1,7 +1,6 @@
 //! What the viewport shows: a view of the film, or a comparison with another picture.
 
 use super::{CheckedScene, Document, Kept, KeptList, Origin, Show, Tone};
-use crate::app::subject::Found;
 use crate::denoise::Denoised;
 use crate::job::recipe::Recipe;
 use crate::progressive::{ReferenceMeans, View};
@@ -61,6 +60,9 @@ impl Other {
         }
     }
 }
+
+/// The denoised picture of a run's film, or why there is none.
+pub type Found = (u64, Result<Arc<Denoised>, String>);
 
 /// The current view, which is exactly one.
 #[derive(Clone, Default, Serialize, Deserialize)]

@@ -1,23 +1,24 @@
 //! The viewport: the picture, and mouse input on it.
 
+pub mod display;
 mod moving;
 pub mod paint;
+pub mod pixel_values;
 mod placement;
 mod selection;
+pub mod sight;
 
 pub use paint::Pictures;
-pub use placement::Placement;
+pub use placement::{Placement, Touch};
 
-use super::command::Command;
-use super::facts::Facts;
-use super::menu;
-use super::model::{Document, Mode};
-use super::navigation;
-use super::widgets::compact;
+use crate::app::commands::{Command, PanelContext, Snapshot};
+use crate::app::model::{Document, Mode, navigation};
+use crate::app::toolkit::menu;
+use crate::app::toolkit::widgets::compact;
 use crate::scene::Camera;
 use eframe::egui::{self, CursorIcon, PointerButton, Pos2, Rect, Response, Sense, Ui, WidgetInfo, vec2};
 use moving::Moving;
-use placement::{Zoom, whole_pixels};
+use placement::{Zoom, place_at, whole_pixels};
 use selection::Selection;
 
 /// How far right the divider can be dragged; at the right edge, a kept picture is looked at.
@@ -45,17 +46,6 @@ pub struct Viewport {
     pointer: Option<[f64; 2]>,
 }
 
-/// What the user does in a frame.
-#[derive(Default)]
-pub struct Touch {
-    /// The camera or a sphere was moved.
-    pub is_move: bool,
-    /// The pixel under the pointer.
-    pub hovered: Option<[u32; 2]>,
-    /// What a click has done, or why it does nothing, in words.
-    pub said: Option<String>,
-}
-
 impl Viewport {
     /// Where a new sphere goes: the pointer's place in the picture; without one, the ground before the camera.
     pub fn aim(&self) -> [f64; 2] {
@@ -70,20 +60,20 @@ impl Viewport {
         ui: &mut Ui,
         (camera, divider, selected): (&mut Camera, &mut f32, &mut Option<usize>),
         pictures: Pictures<'_>,
-        facts: &Facts,
+        cx: &PanelContext,
     ) -> Touch {
-        let (view, live) = (&facts.model.view, facts.document());
+        let (view, live) = (&cx.model.view, cx.document());
         let room = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(room, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
-        let rect = self.place(ui, room, facts);
+        let rect = self.place(ui, room, cx);
         let mut touch = Touch::default();
         let is_wipe = view.mode() == Some(Mode::Wipe);
         let mut is_held = self.handle_divider(ui, &response, is_wipe, divider);
         // Nothing acts on a picture that a kept one hides.
         let is_hidden = view.looked().is_some();
         if !is_hidden && !is_held {
-            (is_held, touch.is_move) = self.selection.handle(ui, &response, rect, facts);
+            (is_held, touch.is_move) = self.selection.handle(ui, &response, rect, cx);
         }
         if is_held {
             self.moving = Moving::default();
@@ -92,14 +82,14 @@ impl Viewport {
             self.moving.handle(ui, &response, &mut self.placement, handles, is_hidden, &mut touch);
         }
         if !is_hidden && !is_held {
-            self.handle_click(ui, &response, facts, (camera, selected), &mut touch);
+            self.handle_click(ui, &response, cx, (camera, selected), &mut touch);
         }
         let document = Document { camera: *camera, ..live.clone() };
-        paint::paint(ui, [room, rect], (&self.placement, *divider), pictures, &document, facts);
+        paint::paint(ui, [room, rect], (&self.placement, *divider), pictures, &document, cx);
         // A wipe shows the traced picture right of the divider.
         let left = if is_wipe { *divider } else { 0.0 };
         let own = rect.with_min_x(rect.lerp_inside(vec2(left, 0.0)).x);
-        self.selection.paint(ui, (rect, own.intersect(room)), &document, facts);
+        self.selection.paint(ui, (rect, own.intersect(room)), &document, cx);
         self.moving.paint(ui, own.intersect(room), rect, &document);
         self.pointer = response.hover_pos().filter(|at| rect.contains(*at)).map(|at| place_at(rect, at));
         let pixel = |at| self.placement.pixel_at(at, document.size());
@@ -111,7 +101,7 @@ impl Viewport {
         {
             *selected = live.pick(camera, place_at(rect, at)).map(|pick| pick.sphere);
         }
-        let has_menu = response.context_menu(|ui| context_menu(ui, facts)).is_some();
+        let has_menu = response.context_menu(|ui| context_menu(ui, cx)).is_some();
         if has_menu && !response.secondary_clicked() {
             // The entries mean the pixel where the menu was opened.
             touch.hovered = None;
@@ -121,17 +111,17 @@ impl Viewport {
     }
 
     /// Places the picture. One that is presented fits the screen.
-    fn place(&mut self, ui: &Ui, room: Rect, facts: &Facts) -> Rect {
-        let model = &facts.model;
+    fn place(&mut self, ui: &Ui, room: Rect, snapshot: &Snapshot) -> Rect {
+        let model = &snapshot.model;
         let is_presenting = model.presentation.is_some();
         let is_of_sight = matches!(self.placement.zoom, Zoom::Part(_));
-        if !facts.has_sight && (is_presenting || is_of_sight) {
+        if !snapshot.has_sight && (is_presenting || is_of_sight) {
             self.placement.fit();
         }
         let margin = if is_presenting || !model.has_panels() { 0.0 } else { MARGIN };
         let (inner, scale) = (room.shrink(margin), ui.ctx().pixels_per_point());
         (self.room, self.room_pixels) = (Some(room), whole_pixels(inner, scale));
-        let [width, height] = facts.document().size().map(|along| along as f32);
+        let [width, height] = snapshot.document().size().map(|along| along as f32);
         self.placement.place(inner, vec2(width, height), scale)
     }
 
@@ -163,11 +153,11 @@ impl Viewport {
         &mut self,
         ui: &Ui,
         response: &Response,
-        facts: &Facts,
+        cx: &PanelContext,
         (camera, selected): (&mut Camera, &mut Option<usize>),
         touch: &mut Touch,
     ) {
-        let (rect, live) = (self.placement.rect, facts.document());
+        let (rect, live) = (self.placement.rect, cx.document());
         let at = response.interact_pointer_pos().filter(|at| rect.contains(*at));
         let Some(at) = at.filter(|_| response.clicked()) else { return };
         if let Some(reason) = live.no_rays() {
@@ -181,7 +171,7 @@ impl Viewport {
                 *camera = navigation::recentre(camera, pick.point);
             }
         } else if is_held(ui, |modifiers| modifiers.alt) {
-            facts.send(Command::ListPaths);
+            cx.send(Command::ListPaths);
         } else if is_held(ui, |modifiers| modifiers.command) {
             let said = pick.map(|pick| {
                 *camera = navigation::focus(camera, pick.point);
@@ -203,26 +193,16 @@ fn is_held(ui: &Ui, is_it: fn(&egui::Modifiers) -> bool) -> bool {
 }
 
 /// The menu of a right click.
-fn context_menu(ui: &mut Ui, facts: &Facts) {
+fn context_menu(ui: &mut Ui, cx: &PanelContext) {
     use Command as C;
     ui.set_width(menu::MENU_WIDTH);
-    if facts.model.selected.is_some() {
+    if cx.model.selected.is_some() {
         for command in [C::FocusSphere, C::DuplicateSphere, C::DeleteSphere] {
-            menu::item(ui, facts, command);
+            menu::item(ui, cx, command);
         }
         ui.separator();
     }
     for command in [C::ListPaths, C::CopyPicture, C::Keep] {
-        menu::item(ui, facts, command);
+        menu::item(ui, cx, command);
     }
-}
-
-/// The position in the picture of a point of the screen, 0 to 1 from the upper left.
-fn place_at(rect: Rect, at: Pos2) -> [f64; 2] {
-    let along = (at - rect.min) / rect.size();
-    [f64::from(along.x), f64::from(along.y)]
-}
-
-fn point_at(rect: Rect, place: [f64; 2]) -> Pos2 {
-    rect.min + vec2(place[0] as f32, place[1] as f32) * rect.size()
 }

@@ -1,9 +1,7 @@
 //! Moves the camera, or the picture, by drags and the wheel.
 
-use super::placement::Placement;
-use super::{Touch, place_at, point_at};
-use crate::app::model::Document;
-use crate::app::navigation;
+use super::placement::{Placement, Touch, place_at, point_at};
+use crate::app::model::{Document, navigation};
 use crate::scene::Camera;
 use eframe::egui::{Color32, CursorIcon, PointerButton, Pos2, Rect, Response, Stroke, Ui, Vec2};
 use glam::DVec3;

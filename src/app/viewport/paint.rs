@@ -1,28 +1,20 @@
 //! Draws the viewport: the picture, the second picture, and words over them.
 
+use super::pixel_values::PixelValues;
 use super::placement::Placement;
-use crate::app::facts::Facts;
+use crate::app::commands::Snapshot;
 use crate::app::model::{Document, Mode, Show};
-use crate::app::paths::Paths;
-use crate::app::pixel_values::PixelValues;
-use crate::app::texture::Texture;
-use crate::app::theme;
+use crate::app::toolkit::overlay::{CORNER, WHOLE, plate, title, wipe};
+use crate::app::toolkit::{Texture, theme};
+use crate::app::tools::paths::Paths;
 use crate::numbers::heat::{HeatScale, colour_at};
 use crate::progressive::Phase;
-use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
-    self, Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, TextStyle, TextureId,
-    TextureOptions, Ui, pos2, vec2,
+    self, Align2, Color32, CornerRadius, Painter, Rect, Stroke, TextStyle, TextureOptions, Ui, pos2, vec2,
 };
-
-/// All of a texture.
-pub const WHOLE: Rect = Rect { min: pos2(0.0, 0.0), max: pos2(1.0, 1.0) };
 
 /// From this many screen pixels per pixel on, pixels are drawn as squares.
 const SQUARES: f32 = 8.0;
-
-/// From an edge of the picture to the words in its corner, in points.
-const CORNER: f32 = 8.0;
 
 /// The pictures to draw.
 pub struct Pictures<'a> {
@@ -45,7 +37,7 @@ pub(super) fn paint(
     (placement, divider): (&Placement, f32),
     pictures: Pictures<'_>,
     document: &Document,
-    facts: &Facts,
+    snapshot: &Snapshot,
 ) {
     let painter = ui.painter().with_clip_rect(room);
     let times = placement.times;
@@ -58,7 +50,7 @@ pub(super) fn paint(
     // The hole is one point smaller, so that no gap stays between picture and background.
     let hole = if main.is_some() { rect.shrink(1.0).intersect(room) } else { Rect::NOTHING };
     fill_around(&painter, room, hole, theme::colours(ui).surround);
-    let view = &facts.model.view;
+    let view = &snapshot.model.view;
     if let Some((texture, is_smooth)) = main {
         painter.image(id(texture, is_smooth), rect, WHOLE, Color32::WHITE);
         values.paint(ui, room, rect, document.size(), |at| texture.colour(at));
@@ -85,7 +77,7 @@ pub(super) fn paint(
         title(ui, &painter, corners, Align2::LEFT_BOTTOM, &text);
     }
     if main.is_none() {
-        let text = match (&facts.invalid, &facts.status.phase) {
+        let text = match (&snapshot.invalid, &snapshot.status.phase) {
             (Some(reason), _) | (None, Phase::Failed(reason)) => reason.as_str(),
             _ => "Starting",
         };
@@ -119,63 +111,6 @@ fn shape_in(rect: Rect, [width, height]: [u32; 2]) -> Rect {
     let stretch = rect.size() / size;
     let is_same = stretch.max_elem() < 1.02 * stretch.min_elem();
     if is_same { rect } else { Rect::from_center_size(rect.center(), size * stretch.min_elem()) }
-}
-
-/// Draws a picture over the one at `rect`, left of a divider, and the titles of both.
-pub fn wipe(
-    ui: &Ui,
-    painter: &Painter,
-    rect: Rect,
-    divider: f32,
-    (left, place): (TextureId, Rect),
-    titles: [&str; 2],
-) {
-    let x = rect.lerp_inside(vec2(divider, 0.0)).x;
-    let over = painter.with_clip_rect(rect.with_max_x(x).intersect(painter.clip_rect()));
-    if place != rect {
-        over.rect_filled(rect, 0.0, theme::colours(ui).surround);
-    }
-    over.image(left, place, WHOLE, Color32::WHITE);
-    let seen = rect.intersect(painter.clip_rect());
-    paint_divider(painter, seen, x);
-    title(ui, painter, seen.with_max_x(x), Align2::LEFT_TOP, titles[0]);
-    title(ui, painter, seen.with_min_x(x), Align2::RIGHT_TOP, titles[1]);
-}
-
-/// The divider of a wipe, with a round handle.
-fn paint_divider(painter: &Painter, rect: Rect, x: f32) {
-    const HANDLE: f32 = 24.0;
-    painter.vline(x, rect.y_range(), Stroke::new(4.0, Color32::from_black_alpha(120)));
-    painter.vline(x, rect.y_range(), Stroke::new(2.0, Color32::WHITE));
-    let knob = pos2(x, rect.center().y);
-    painter.circle(knob, 0.5 * HANDLE, Color32::WHITE, Stroke::new(1.0, Color32::from_black_alpha(120)));
-    painter.text(knob, Align2::CENTER_CENTER, "‹ ›", FontId::proportional(16.0), Color32::from_gray(30));
-}
-
-/// A title in a corner of the area, cut or left out if it has no room.
-pub fn title(ui: &Ui, painter: &Painter, area: Rect, corner: Align2, text: &str) {
-    let area = area.shrink(CORNER);
-    if area.is_positive() {
-        plate(ui, painter, corner.pos_in_rect(&area), corner, text, area.width());
-    }
-}
-
-/// Words on a plate, readable on any picture, within the painter's area, and cut to this width.
-pub(super) fn plate(ui: &Ui, painter: &Painter, at: Pos2, anchor: Align2, text: &str, width: f32) {
-    let font = TextStyle::Small.resolve(ui.style());
-    let pad = vec2(0.65, 0.35) * font.size;
-    let mut job = LayoutJob::simple_singleline(text.to_owned(), font, ui.visuals().strong_text_color());
-    job.wrap = TextWrapping::truncate_at_width((width - 2.0 * pad.x).max(0.0));
-    let galley = painter.layout_job(job);
-    let (rect, clip) = (anchor.anchor_size(at, galley.size() + 2.0 * pad), painter.clip_rect());
-    let inwards = (clip.min - rect.min).max(egui::Vec2::ZERO) - (rect.max - clip.max).max(egui::Vec2::ZERO);
-    let rect = rect.translate(inwards);
-    let fill = match ui.visuals().dark_mode {
-        true => theme::colours(ui).surround.gamma_multiply(0.88),
-        false => ui.visuals().panel_fill.gamma_multiply(0.93),
-    };
-    painter.rect_filled(rect, CornerRadius::same(4), fill);
-    painter.galley(rect.center() - 0.5 * galley.size(), galley, Color32::WHITE);
 }
 
 /// Draws the legend of a heat map in the lower left corner of `rect`.

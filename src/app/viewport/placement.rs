@@ -1,6 +1,6 @@
 //! The position and scale of the picture.
 
-use eframe::egui::{Pos2, Rect, Vec2, pos2};
+use eframe::egui::{Pos2, Rect, Vec2, pos2, vec2};
 
 /// The scale of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,10 +126,30 @@ pub fn whole_pixels(room: Rect, pixels_per_point: f32) -> [u32; 2] {
     [pixels.x.max(0.0) as u32, pixels.y.max(0.0) as u32]
 }
 
+/// What the user does in a frame.
+#[derive(Default)]
+pub struct Touch {
+    /// The camera or a sphere was moved.
+    pub is_move: bool,
+    /// The pixel under the pointer.
+    pub hovered: Option<[u32; 2]>,
+    /// What a click has done, or why it does nothing, in words.
+    pub said: Option<String>,
+}
+
+/// The position in the picture of a point of the screen, 0 to 1 from the upper left.
+pub(super) fn place_at(rect: Rect, at: Pos2) -> [f64; 2] {
+    let along = (at - rect.min) / rect.size();
+    [f64::from(along.x), f64::from(along.y)]
+}
+
+pub(super) fn point_at(rect: Rect, place: [f64; 2]) -> Pos2 {
+    rect.min + vec2(place[0] as f32, place[1] as f32) * rect.size()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eframe::egui::vec2;
 
     const ROOM: Rect = Rect { min: pos2(100.0, 50.0), max: pos2(900.0, 650.0) };
     const SIZE: Vec2 = vec2(320.0, 240.0);

@@ -1,14 +1,14 @@
 //! The selected sphere in the picture: its outline, its handle, and drags of either.
 
-use super::paint::plate;
-use super::{place_at, point_at};
-use crate::app::facts::Facts;
+use super::placement::{place_at, point_at};
+use crate::app::commands::{PanelContext, Snapshot};
+use crate::app::model::spheres::Selected;
+use crate::app::model::spheres::grip::{Grip, Held};
+use crate::app::model::spheres::silhouette::Outline;
 use crate::app::model::{Body, Document, Edit};
-use crate::app::spheres::Selected;
-use crate::app::spheres::grip::{Grip, Held};
-use crate::app::spheres::silhouette::Outline;
-use crate::app::theme;
-use crate::app::widgets::{compact, point_words};
+use crate::app::toolkit::overlay::plate;
+use crate::app::toolkit::theme;
+use crate::app::toolkit::widgets::{compact, point_words};
 use eframe::egui::{
     Align2, Color32, CursorIcon, PointerButton, Pos2, Rect, Response, Shape, Stroke, Ui, vec2,
 };
@@ -29,10 +29,10 @@ pub(super) struct Selection(Option<Held>);
 impl Selection {
     /// Handles drags of the selected sphere in the picture at `rect`. Returns whether the user holds it, and whether it
     /// changes.
-    pub(super) fn handle(&mut self, ui: &Ui, response: &Response, rect: Rect, facts: &Facts) -> (bool, bool) {
+    pub fn handle(&mut self, ui: &Ui, response: &Response, rect: Rect, cx: &PanelContext) -> (bool, bool) {
         let before = self.0.take();
-        let Some(selected) = Selected::of(&facts.model) else { return (false, false) };
-        let document = facts.document();
+        let Some(selected) = Selected::of(&cx.model) else { return (false, false) };
+        let document = cx.document();
         let (modifiers, origin) = ui.input(|input| (input.modifiers, input.pointer.press_origin()));
         let grasped = |at: Option<Pos2>| {
             grasped(rect, &selected, document, at.filter(|_| !modifiers.shift)?, modifiers.command)
@@ -47,7 +47,7 @@ impl Selection {
             let body = held.dragged(&document.camera, document.aspect(), place_at(rect, at));
             let is_changed = body != selected.body;
             if is_changed {
-                facts.edit(Edit::Change(selected.sphere, body));
+                cx.edit(Edit::Change(selected.sphere, body));
             }
             return (true, is_changed);
         }
@@ -58,8 +58,8 @@ impl Selection {
     }
 
     /// Draws the outline, the handle and the name of the selected sphere.
-    pub(super) fn paint(&self, ui: &Ui, (rect, clip): (Rect, Rect), document: &Document, facts: &Facts) {
-        let Some(selected) = Selected::of(&facts.model) else { return };
+    pub fn paint(&self, ui: &Ui, (rect, clip): (Rect, Rect), document: &Document, snapshot: &Snapshot) {
+        let Some(selected) = Selected::of(&snapshot.model) else { return };
         let painter = &ui.painter().with_clip_rect(clip);
         let outline = outline(&selected, document);
         // Points far outside are left out: their lines would not be seen, and their coordinates have no precision.

@@ -1,6 +1,6 @@
 //! OpenEXR as any program writes it.
 
-use super::read::{ReadPicture, Values, check_memory, note_on_alpha, pixel_count};
+use super::read::{ReadPicture, Values, check_memory, note_on_alpha, note_on_primaries, pixel_count};
 use crate::film::checkpoint;
 use anyhow::{Result, anyhow, bail};
 use exr::error::Error;
@@ -68,7 +68,7 @@ pub(super) fn read(mut reader: impl BufRead + Seek, length: u64, layer: Option<&
     }
     let values =
         Values::Floats { rgb, halves: channels.map(|channel| matches!(channel, FlatSamples::F16(_))) };
-    Ok(ReadPicture { width, height, format: "EXR", values, damages: Vec::new(), notes })
+    Ok(ReadPicture { width, height, format: "EXR", values, damages: Vec::new(), notes, stated: None })
 }
 
 /// All layers with red, green and blue; if there are none, all with luminance.
@@ -131,15 +131,7 @@ fn names(layers: &[Layer]) -> String {
 /// A note if the colours of a picture are not those of sRGB.
 fn note_on_colours(image: &FlatImage) -> Option<String> {
     let space = image.attributes.chromaticities.as_ref()?;
-    let found = [space.red, space.green, space.blue, space.white].map(|Vec2(x, y)| [x, y]);
-    let usual = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]];
-    let is_near = |(found, usual): (&f32, &f32)| (found - usual).abs() < 2e-3;
-    let [x, y] = found[0];
-    (!found.as_flattened().iter().zip(usual.as_flattened()).all(is_near)).then(|| {
-        format!(
-            "its colours are not those of sRGB (its red is at {x},{y} instead of 0.64,0.33); they are not converted"
-        )
-    })
+    note_on_primaries([space.red, space.green, space.blue, space.white].map(|Vec2(x, y)| [x, y]))
 }
 
 /// Width and height, if there is memory for a picture and as many more bytes for each pixel.

@@ -32,7 +32,7 @@ pub(super) fn read(file: &[u8]) -> Result<ReadPicture> {
     if start > 0 {
         damages.push(Damage::new(
             "there is other text before the header",
-            "write nothing but the picture to standard output; messages belong to std::clog",
+            "write only the picture to standard output; messages belong to std::clog",
         ));
     }
     let mut is_appended = false;
@@ -126,7 +126,15 @@ fn integers(
     }
     let value = |pixel: &[i64], channel: usize| pixel[channel.min(channels - 1)].clamp(0, most.into()) as u16;
     let rgb = values.chunks_exact(channels).map(|pixel| [0, 1, 2].map(|c| value(pixel, c))).collect();
-    ReadPicture { width, height, format, values: Values::Integers { most, rgb }, damages: Vec::new(), notes }
+    ReadPicture {
+        width,
+        height,
+        format,
+        values: Values::Integers { most, rgb },
+        damages: Vec::new(),
+        notes,
+        stated: None,
+    }
 }
 
 /// Reads numbers written as text, leaving out what does not belong.
@@ -254,7 +262,7 @@ fn floats(mut words: Words, channels: usize) -> Result<ReadPicture> {
         .map(|pixel| pixel.map(|bytes| value(declared != is_swapped, bytes) * scale.abs()))
         .collect();
     let values = Values::Floats { rgb, halves: [false; 3] };
-    Ok(ReadPicture { width, height, format: "PFM", values, damages: Vec::new(), notes })
+    Ok(ReadPicture { width, height, format: "PFM", values, damages: Vec::new(), notes, stated: None })
 }
 
 /// Writes the mean as a PFM with the lowest byte first. It has no description, for which the format has no place.
@@ -364,7 +372,7 @@ fn header(file: &[u8]) -> Option<usize> {
     None
 }
 
-/// What a file without a header is.
+/// The format of a file without a header.
 fn foreign(file: &[u8]) -> String {
     let known = image::guess_format(file).ok().and_then(|format| format.extensions_str().first().copied());
     // A TGA has no signature at its start.

@@ -1,6 +1,7 @@
 //! 8-bit PNG. Each key of the description is the keyword of a text chunk; the recipe's chunk is compressed.
 
-use super::{Description, RECIPE_KEY, RECIPE_LIMIT, write_rows};
+use super::read::note_on_primaries;
+use super::{Description, Encoding, RECIPE_KEY, RECIPE_LIMIT, write_rows};
 use crate::film::Film;
 use crate::stages::Transfer;
 use anyhow::{Result, anyhow};
@@ -64,4 +65,56 @@ pub(super) fn read_description(reader: impl BufRead + Seek) -> Result<Option<Des
         description.set(&chunk.keyword, chunk.get_text()?);
     }
     Ok(Some(description))
+}
+
+/// What a PNG says about its transfer curve and its primaries: the meaning of its values if it is one that this program
+/// knows, and notes on what is ignored. The chunk that comes first here overrides the others, as in the specification.
+pub(super) fn colours(reader: &mut (impl BufRead + Seek)) -> (Option<Encoding>, Vec<String>) {
+    let mut decoder = ::png::Decoder::new(reader);
+    // Damage is reported when the pixels are read.
+    let Ok(info) = decoder.read_header_info() else { return (None, Vec::new()) };
+    if let Some(codes) = info.coding_independent_code_points {
+        let (stated, curve) = match codes.transfer_function {
+            8 => (Some(Encoding::Book(Transfer::Linear)), None),
+            13 => (Some(Encoding::Srgb), None),
+            4 => (Some(Encoding::Gamma(2.2)), None),
+            16 => (None, Some("PQ".to_owned())),
+            18 => (None, Some("HLG".to_owned())),
+            other => (None, Some(format!("number {other}"))),
+        };
+        let curve = curve.map(|curve| {
+            format!(
+                "it says (cICP) that its transfer curve is {curve}, which is ignored; choose with --encoding"
+            )
+        });
+        let primaries = (codes.color_primaries != 1).then(|| {
+            let name = match codes.color_primaries {
+                9 => "those of BT.2020".to_owned(),
+                12 => "those of Display P3".to_owned(),
+                other => format!("number {other}"),
+            };
+            format!("it says (cICP) that its primaries are {name}, not those of sRGB; they are not converted")
+        });
+        return (stated, curve.into_iter().chain(primaries).collect());
+    }
+    if info.icc_profile.is_some() {
+        let note = "it has an ICC profile, which is ignored; choose the transfer curve with --encoding";
+        return (None, vec![note.to_owned()]);
+    }
+    if info.srgb.is_some() {
+        return (Some(Encoding::Srgb), Vec::new());
+    }
+    let place = |(x, y): (::png::ScaledFloat, ::png::ScaledFloat)| [x.into_value(), y.into_value()];
+    let primaries = info.chrm_chunk.map(|found| [found.red, found.green, found.blue, found.white].map(place));
+    let notes = primaries.and_then(note_on_primaries).into_iter().collect();
+    let exponent = info.gama_chunk.map(|gamma| 1.0 / f64::from(gamma.into_value()));
+    let is_near = |exponent: f64, usual: f64| (exponent / usual - 1.0).abs() < 1e-3;
+    let stated = exponent.filter(|exponent| exponent.is_finite()).map(|exponent| match exponent {
+        // Written beside or instead of the sRGB chunk.
+        _ if is_near(exponent, 2.2) => Encoding::Srgb,
+        _ if is_near(exponent, 1.0) => Encoding::Book(Transfer::Linear),
+        _ if is_near(exponent, 2.0) => Encoding::Book(Transfer::Gamma2),
+        _ => Encoding::Gamma(exponent),
+    });
+    (stated, notes)
 }

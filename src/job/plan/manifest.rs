@@ -10,6 +10,7 @@ use crate::stages::Stage;
 use crate::system::files::{self, ShownPath, write_text};
 use anyhow::{Result, anyhow, ensure};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -44,7 +45,7 @@ pub struct Manifest {
     pub parts: Vec<Part>,
     /// Flags for every part's command.
     pub flags: Vec<String>,
-    /// What the parts are merged into, beside the manifest.
+    /// The file of the merged film, beside the manifest.
     pub result: String,
 }
 
@@ -108,7 +109,7 @@ impl Manifest {
             )
         };
         let manifest: Manifest =
-            serde_json::from_slice(&bytes).map_err(|error| damaged(error.to_string()))?;
+            serde_json::from_slice(&as_written(&bytes)).map_err(|error| damaged(error.to_string()))?;
         let Manifest { sample_version, program, .. } = &manifest;
         ensure!(
             *sample_version == SAMPLE_VERSION,
@@ -248,7 +249,8 @@ impl Plan {
 /// Refuses to replace a foreign or changed file.
 fn check_free(path: &Path, text: &str) -> Result<()> {
     let is_same = || {
-        files::read(path, "a file of the plan", LENGTH_LIMITS[1]).is_ok_and(|there| there == text.as_bytes())
+        let there = files::read(path, "a file of the plan", LENGTH_LIMITS[1]);
+        there.is_ok_and(|there| as_written(&there) == text.as_bytes())
     };
     ensure!(
         path.symlink_metadata().is_err() || is_same(),
@@ -258,9 +260,20 @@ fn check_free(path: &Path, text: &str) -> Result<()> {
     Ok(())
 }
 
+/// A text as this program writes it, without what Windows' editors and git's `autocrlf` change: a byte order mark at the
+/// start, and a carriage return before each line end.
+fn as_written(text: &[u8]) -> Cow<'_, [u8]> {
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    if !text.contains(&b'\r') {
+        return Cow::Borrowed(text);
+    }
+    let is_kept = |place: &usize| !text[*place..].starts_with(b"\r\n");
+    Cow::Owned((0..text.len()).filter(is_kept).map(|place| text[place]).collect())
+}
+
 fn checksum(text: &[u8]) -> String {
     let mut sum = Checksum::default();
-    sum.text(text);
+    sum.text(&as_written(text));
     sum.finish()
 }
 

@@ -59,7 +59,7 @@ fn a_film_of_the_same_size_and_halves_fits() {
 
 #[test]
 fn memory_check_counts_films_file_and_spheres() {
-    if memory::free_bytes().is_none() {
+    if memory::room().is_none() {
         return;
     }
     // More than there ever is, in 24 bytes for each pixel of a half.

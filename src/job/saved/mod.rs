@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 /// Why a file cannot be opened or resumed. The message names the file and says what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
-    /// The film is damaged, of another version, or cannot be read; or a film is needed, and this is none.
+    /// The film is damaged, of another version, or cannot be read; or a film is needed and the file is something else.
     #[error(transparent)]
     Film(CheckpointError),
     /// The picture cannot be read or does not describe how it was made.

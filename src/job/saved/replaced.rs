@@ -5,7 +5,7 @@ use crate::film::{SampleRanges, checkpoint};
 use crate::system::files::ShownPath;
 use std::path::Path;
 
-/// What exists where a film is to be written.
+/// An existing file that a film would replace.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Replaced {
     /// No file, an empty one, or a device.
@@ -50,7 +50,7 @@ impl Replaced {
     pub fn refusal(&self, path: &Path) -> Option<String> {
         let (path, what) = (path.shown(), self.what()?);
         let go_on = match self {
-            Replaced::Same(_) => format!("go on with them (--checkpoint {path} --continue), or "),
+            Replaced::Same(_) => format!("resume them (--checkpoint {path} --continue), or "),
             _ => String::new(),
         };
         Some(format!(
@@ -58,7 +58,7 @@ impl Replaced {
         ))
     }
 
-    /// What would be lost.
+    /// The samples that would be lost.
     fn what(&self) -> Option<String> {
         match self {
             Replaced::Nothing => None,

@@ -2,7 +2,7 @@
 
 use crate::film::{Description, Film, checkpoint, key};
 use crate::job::recipe::plain_name;
-use crate::system::files::{ShownPath, home_directory, state_directory};
+use crate::system::files::{ShownPath, home_directory, state_directory, sync_directory};
 use std::env;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ const NAME_LENGTH: usize = 60;
 /// then those for temporary files, for the state of programs, and the home directory.
 ///
 /// # Errors
-/// What is lost, and why each place failed.
+/// The loss, and why each place failed.
 pub fn rescue(
     first: &[PathBuf],
     name: &str,
@@ -44,7 +44,9 @@ fn keep_in(
         writer.flush()?;
         drop(writer);
         file.as_file().sync_data()?;
-        Ok(file.into_temp_path().keep()?)
+        let path = file.into_temp_path().keep()?;
+        sync_directory(directory)?;
+        Ok(path)
     };
     let mut reasons = Vec::new();
     for place in places {

@@ -91,7 +91,7 @@ const PRIOR_SLOPE_DEVIATION: f64 = 0.08;
 const LEAST_SCATTER: f64 = 0.02;
 
 /// Predicts when the error, `now` at the time `now.time`, falls to the target. `history` holds earlier estimates,
-/// oldest first, of which the last [`TAIL`] are used.
+/// oldest first; only the last [`TAIL`] are used.
 ///
 /// The slope is that of the history and `now`, averaged with the slope of independent samples, weighted by their
 /// uncertainties. `None` if the target has been reached.
@@ -144,8 +144,8 @@ mod tests {
         assert_eq!(time_to(&points, 0.2), None);
     }
 
-    /// The measured slope is weighted by its uncertainty (at least that of a scatter of .02) against a slope of -.5 +-
-    /// .08.
+    /// The measured slope is weighted by its uncertainty (at least that of a scatter of 0.02) against a slope of -0.5 +-
+    /// 0.08.
     #[test]
     fn predicted_slope_is_bounded() {
         // The logarithms of four times, each twice the last, have squares around their mean of 5 ln(2)^2.

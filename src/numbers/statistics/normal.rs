@@ -66,7 +66,7 @@ mod tests {
 
     #[test]
     fn student_quantiles_become_normal() {
-        // Two-sided quantiles of Student's distribution for probabilities of 5 % and .1 %.
+        // Two-sided quantiles of Student's distribution for probabilities of 5 % and 0.1 %.
         for (freedom, five_percent, per_mille) in
             [(5.0, 2.5706, 6.8688), (20.0, 2.0860, 3.8495), (63.0, 1.9983, 3.4515)]
         {

@@ -68,7 +68,7 @@ impl Mine {
     }
 
     fn of(read: ReadPicture) -> Result<Mine, String> {
-        let ReadPicture { width, height, format, values, damages, notes } = read;
+        let ReadPicture { width, height, format, values, damages, notes, .. } = read;
         let Values::Integers { most, rgb } = values else {
             return Err("it holds floating-point numbers; write 8 bits per channel".to_owned());
         };

@@ -1,5 +1,6 @@
 //! `weekender compare`: whether two pictures differ by more than noise.
 
+mod hints;
 mod verdict;
 
 pub use verdict::{Comparison, ROUNDING_BIAS, compare, half_differences};
@@ -39,11 +40,7 @@ pub fn compare_sides(sides: &[Picture; 2]) -> Result<Comparison> {
         sides.iter().flat_map(|side| side.notes.iter().map(|note| format!("{}: {note}", side.name)));
     comparison.notes.extend(of_files);
     if comparison.verdict() == Verdict::Different {
-        let mut flipped = b.clone();
-        flipped.pixels = b.pixels.chunks_exact(b.width as usize).rev().flatten().copied().collect();
-        if compare(a, &flipped).rms < 0.5 * comparison.rms {
-            comparison.notes.push("they are much closer if one of them is turned upside down".to_owned());
-        }
+        comparison.notes.extend(hints::hint(a, b));
     }
     Ok(comparison)
 }

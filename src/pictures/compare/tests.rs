@@ -265,7 +265,7 @@ fn fewer_levels_are_no_difference() {
         }
         let path = directory.path().join("a.ppm");
         std::fs::write(&path, file).unwrap();
-        Picture::read(&path, Encoding::Book(Transfer::Gamma2)).unwrap()
+        Picture::read(&path, Some(Encoding::Book(Transfer::Gamma2))).unwrap()
     };
     let fine = read(255, false, 0.0);
     for (most, is_rounded) in [(31, false), (15, true), (100, true)] {
@@ -322,4 +322,47 @@ fn only_differing_channels_count_as_tries() {
         places.iter().for_each(|(x, y, channel)| other.pixels[y * 80 + x][*channel] += 0.05);
         assert_eq!(compare(&one, &other).test.largest_limit, largest_of(tries, CHANCE), "{places:?}");
     }
+}
+
+#[test]
+fn mistakes_of_a_file_are_hinted_at() {
+    let right = floats(|pixel| {
+        let (x, y) = (f64::from(pixel % 80) / 80.0, f64::from(pixel / 80) / 48.0);
+        0.1 + 0.4 * (7.0 * x * x + y).sin().powi(2) + 0.2 * y * y + 0.1 * random(pixel, 0, 1)
+    });
+    let mut coloured = right.clone();
+    coloured.pixels.iter_mut().for_each(|pixel| pixel[2] *= 0.3);
+    let at = |picture: &Picture, x: usize, y: usize| picture.pixels[y.min(47) * 80 + x.min(79)];
+    let moved = |to: fn(usize, usize) -> (usize, usize)| {
+        let pixels = (0..PIXELS).map(|pixel| {
+            let (x, y) = to(pixel % 80, pixel / 80);
+            at(&coloured, x, y)
+        });
+        Picture { pixels: pixels.collect(), ..coloured.clone() }
+    };
+    let changed = |change: fn(f64) -> f64| {
+        let pixels = coloured.pixels.iter().map(|pixel| pixel.map(change));
+        Picture { pixels: pixels.collect(), ..coloured.clone() }
+    };
+    let swapped = coloured.pixels.iter().map(|[red, green, blue]| [*blue, *green, *red]).collect();
+    for (second, part) in [
+        (moved(|x, y| (x, 47 - y)), "upside down"),
+        (moved(|x, y| (79 - x, y)), "mirrored"),
+        (moved(|x, y| (79 - x, 47 - y)), "180 degrees"),
+        (moved(|x, y| (x + 1, y)), "to the right by a pixel"),
+        (moved(|x, y| (x, y.saturating_sub(1))), "shifted up by a pixel"),
+        (Picture { pixels: swapped, ..coloured.clone() }, "red and blue"),
+        (changed(|x| 2.0 * x), "0.5000 times as bright"),
+        (changed(f64::sqrt), "squared"),
+        (changed(|x| x * x), "square roots"),
+        (changed(|x| Encoding::Srgb.displayed(x, 0, 1)), "sRGB"),
+    ] {
+        let notes = compare_sides(&[coloured.clone(), second]).unwrap().notes;
+        assert!(
+            notes.iter().any(|note| note.contains("much closer") && note.contains(part)),
+            "{part}: {notes:?}"
+        );
+    }
+    let notes = compare_sides(&[coloured.clone(), changed(|x| x + 0.3)]).unwrap().notes;
+    assert!(!notes.iter().any(|note| note.contains("mirrored")), "{notes:?}");
 }

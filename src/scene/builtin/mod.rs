@@ -30,7 +30,7 @@ pub struct BuiltinScene {
     pub build: fn() -> (Scene, Camera),
 }
 
-/// What most of them have in common.
+/// The settings that most of them share.
 const SMALL: BuiltinScene = BuiltinScene {
     name: "",
     about: "",

@@ -67,7 +67,7 @@ impl FileLock {
 impl Drop for FileLock {
     fn drop(&mut self) {
         if let Some((_, path)) = &self.held {
-            // Still locked by us, so nobody else has it. If it stays, the next run reuses it.
+            // It is still locked, so no other run has it. If it cannot be removed, the next run reuses it.
             let _ = fs::remove_file(path);
         }
     }

@@ -6,6 +6,8 @@ mod pages;
 mod paths;
 mod read;
 mod replace;
+mod standard;
+mod sync;
 
 pub use lock::{FileLock, LockedError, lock_path};
 pub use pages::{GENERATOR, check_page};
@@ -15,3 +17,4 @@ pub use paths::{
 };
 pub use read::{InputError, open, read};
 pub use replace::{WriteError, check_replaceable, check_writable, replace_file, write_text};
+pub use sync::sync_directory;

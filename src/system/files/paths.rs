@@ -1,5 +1,6 @@
 //! Paths: as text in messages and JSON, what they lead to, and the user's directories.
 
+use super::sync::create_directory;
 use crate::system::console::printable;
 use anyhow::{Context, Result};
 use std::env;
@@ -59,7 +60,7 @@ pub(super) fn resolved(path: &Path) -> io::Result<PathBuf> {
 pub fn make_directory(directory: &Path) -> Result<()> {
     let context = || format!("cannot create the directory {}; choose another with --out", directory.shown());
     // A file's parent may be empty.
-    let created = if directory.as_os_str().is_empty() { Ok(()) } else { fs::create_dir_all(directory) };
+    let created = if directory.as_os_str().is_empty() { Ok(()) } else { create_directory(directory) };
     created.with_context(context)
 }
 

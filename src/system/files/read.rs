@@ -2,6 +2,7 @@
 
 use super::paths::{STANDARD, ShownPath};
 use super::replace::is_pipe;
+use super::standard::unnamed;
 use crate::system::memory::words;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -18,6 +19,11 @@ pub struct InputError(String);
 
 impl InputError {
     pub(crate) fn unreadable(path: &Path, reason: impl Display) -> Self {
+        if path == Path::new(STANDARD) {
+            return InputError(format!(
+                "cannot read standard input: {reason}; pipe a file into it, or name the file"
+            ));
+        }
         let path = path.shown();
         InputError(format!("cannot read {path}: {reason}; check its name and whether you may read it"))
     }
@@ -63,7 +69,7 @@ fn copied(path: &Path) -> io::Result<File> {
 }
 
 fn copy_of(path: &Path) -> io::Result<File> {
-    let mut copy = tempfile::tempfile()?;
+    let mut copy = unnamed()?;
     let length = if path != Path::new(STANDARD) {
         io::copy(&mut File::open(path)?.take(PIPE_LIMIT), &mut copy)?
     } else if io::stdin().is_terminal() {

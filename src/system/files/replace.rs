@@ -2,13 +2,15 @@
 
 use super::leftovers;
 use super::paths::{STANDARD, ShownPath, resolved};
+use super::standard::unnamed;
+use super::sync::sync_directory;
 use std::fs::{self, File, Metadata, OpenOptions, Permissions};
 use std::io::{self, BufWriter, ErrorKind, Seek, Write};
 use std::path::{Component, Path, PathBuf, Prefix};
 use std::time::{Duration, Instant};
 use tempfile::NamedTempFile;
 
-/// How long to wait for another program to close the file that is to be replaced. Some open each new file for a moment.
+/// How long to wait for another program to close the file to be replaced. Some programs briefly open each new file.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Pause between attempts.
@@ -16,14 +18,20 @@ const PAUSE: Duration = Duration::from_millis(5);
 
 /// A failed write. The previous file is unchanged.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot write {}: {reason}; {}", path.shown(), remedy(reason))]
+#[error("cannot write {}: {reason}; {}", named(path), remedy(path, reason))]
 pub struct WriteError {
     pub path: PathBuf,
     pub reason: io::Error,
 }
 
-fn remedy(reason: &io::Error) -> &'static str {
+/// How messages name an output.
+fn named(path: &Path) -> String {
+    if path == Path::new(STANDARD) { "standard output".to_owned() } else { path.shown() }
+}
+
+fn remedy(path: &Path, reason: &io::Error) -> &'static str {
     match reason.kind() {
+        _ if path == Path::new(STANDARD) => "write to a file, or to a program that reads all of it",
         ErrorKind::NotFound => "create its directory first, or choose another place",
         ErrorKind::IsADirectory => "name a file in that directory",
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
@@ -66,8 +74,9 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), WriteError> {
 /// read-only or, on Windows, open in another program, or the file system does not accept the name.
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     let check = || match Target::find(path)? {
+        Target::StandardOutput => unnamed().map(drop),
         // Opening a pipe would wait for its reader, and closing it would end the reader's input.
-        Target::StandardOutput | Target::Device { is_pipe: true } => Ok(()),
+        Target::Device { is_pipe: true } => Ok(()),
         Target::Device { .. } => OpenOptions::new().write(true).open(path).map(drop),
         Target::File { path, directory, old } => {
             leftovers::remove_from(&directory);
@@ -117,11 +126,11 @@ impl Target {
             Err(error) => return Err(error),
         };
         if old.is_none() && fs::symlink_metadata(named).is_ok() {
-            return Err(io::Error::new(ErrorKind::InvalidInput, "it is a link to a file that is not there"));
+            return Err(io::Error::new(ErrorKind::InvalidInput, "it is a link to a missing file"));
         }
         let text = named.to_string_lossy();
         if text.strip_suffix('.').unwrap_or(&text).ends_with(std::path::is_separator) {
-            return Err(io::Error::new(ErrorKind::InvalidFilename, "its end stands for a directory"));
+            return Err(io::Error::new(ErrorKind::InvalidFilename, "it names a directory"));
         }
         let path = resolved(named)?;
         let (Some(directory), Some(_)) = (path.parent(), path.file_name()) else {
@@ -221,7 +230,7 @@ fn try_write(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Resul
     match Target::find(path)? {
         Target::StandardOutput => {
             // Some formats are not written from start to end.
-            let mut file = tempfile::tempfile()?;
+            let mut file = unnamed()?;
             fill(&file)?;
             file.rewind()?;
             io::copy(&mut file, &mut io::stdout().lock()).map(drop)
@@ -239,7 +248,8 @@ fn try_write(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Resul
                     Err(refused.error)
                 }
                 _ => Ok(()),
-            })
+            })?;
+            sync_directory(&directory)
         }
     }
 }

@@ -33,12 +33,7 @@ pub fn watched(version: String, program: impl FnOnce() -> ExitCode) -> ExitCode 
 pub fn write_report() {
     let Some(message) = LATEST.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
     let version = VERSION.get().map_or("unknown", String::as_str);
-    let text = report(
-        version,
-        &Shell::HERE.line(env::args_os().map(|word| word.to_string_lossy().into_owned())),
-        &message,
-        &kept_text(),
-    );
+    let text = report(version, &Shell::HERE.line(env::args_os()), &message, &kept_text());
     let name = format!("weekender-report-{}.txt", std::process::id());
     let state = state_directory().filter(|state| std::fs::create_dir_all(state).is_ok());
     let places = [Some(env::temp_dir()), state, Some(PathBuf::from("."))];
@@ -56,8 +51,8 @@ fn report(version: &str, command: &str, message: &str, log: &str) -> String {
     let directory = env::current_dir().map_or_else(|error| error.to_string(), |at| at.display().to_string());
     let log = if log.is_empty() { "(empty)" } else { log };
     format!(
-        "Weekender ended by an error of its own. This file tells its developers what happened. It holds nothing but \
-         what follows; remove what is private.\n\nversion    {version}\ncommand    {command}\ndirectory  \
+        "Weekender stopped because of an internal error. This file tells its developers what happened. It contains only \
+         the following; remove anything private.\n\nversion    {version}\ncommand    {command}\ndirectory  \
          {directory}\n\n{message}\n\nLog (seconds since the start):\n{log}\n"
     )
 }

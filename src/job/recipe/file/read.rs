@@ -67,7 +67,7 @@ pub fn parse(text: &str, name: &str) -> anyhow::Result<Recipe> {
     recipe_of(raw, name).map_err(|(place, reason)| error_at(text, name, place.start, &reason))
 }
 
-/// Whether the line at `place` has a comma between two digits and is no list.
+/// Whether the line at `place` has a comma between two digits outside a list.
 fn has_decimal_comma(text: &str, place: usize) -> bool {
     let start = text.get(..place).and_then(|before| before.rfind('\n')).map_or(0, |end| end + 1);
     let line = text[start..].lines().next().unwrap_or_default();

@@ -1,0 +1,10 @@
+//! What the window can do: the table of all commands, the snapshot of the window that decides which are available, and
+//! the requests of panels. A command is data; only the window knows how to carry it out.
+
+mod requests;
+mod snapshot;
+mod table;
+
+pub use requests::{PanelContext, Requests};
+pub use snapshot::Snapshot;
+pub use table::{Command, MENUS, ROWS, Row};

@@ -1,0 +1,59 @@
+//! A snapshot of the window for the panels, which show it but do not change it.
+
+use crate::app::model::{Document, Model};
+use crate::progressive::{Status, Stop};
+use std::sync::Arc;
+
+/// A snapshot of the window at the start of the frame.
+pub struct Snapshot {
+    /// What the user has chosen.
+    pub model: Model,
+    /// The status of the render.
+    pub status: Arc<Status>,
+    /// Seconds of tracing that the film's samples took before this run, if known.
+    pub seconds_before: Option<f64>,
+    /// What Undo and Redo would change, if anything.
+    pub undo: Option<&'static str>,
+    pub redo: Option<&'static str>,
+    /// The render is a preview, and the camera or a sphere is being moved.
+    pub is_coarse: bool,
+    /// There is a picture of the document, at any size.
+    pub has_picture: bool,
+    pub is_moving: bool,
+    /// The render began during the pause that lasts, and stops early.
+    pub is_held: bool,
+    /// Nothing but sky and ground is in sight, unlike from the camera of the stage.
+    pub is_lost: bool,
+    /// What was checked, in words.
+    pub checked: Option<String>,
+    /// Whether the pointer has been over the picture.
+    pub has_pixel: bool,
+    /// Whether there is a list of paths.
+    pub has_paths: bool,
+    /// Whether the stage's sight is shown.
+    pub has_sight: bool,
+    /// Why the document cannot be rendered, if so.
+    pub invalid: Option<String>,
+}
+
+impl Snapshot {
+    /// The document that is shown.
+    pub fn document(&self) -> &Document {
+        &self.model.document
+    }
+
+    /// How a render that has ended can go on.
+    pub fn further(&self) -> Option<Stop> {
+        self.document().further(&self.status).filter(|_| !self.model.is_paused)
+    }
+
+    /// Whether samples are being added.
+    pub fn is_working(&self) -> bool {
+        self.status.phase.is_working()
+    }
+
+    /// Why the document's camera has no effect, if so.
+    pub fn no_rays(&self) -> Option<&'static str> {
+        self.document().no_rays()
+    }
+}

@@ -1,0 +1,505 @@
+//! Everything that a menu entry, a key, a button or the palette can do: one table, one row a command.
+
+use super::snapshot::Snapshot;
+use crate::app::model::{Channel, Device, Dock, Mode, Model, Show, Tab, ViewState, With};
+use crate::job::output::OutputFormat;
+use crate::measure::stress::Case;
+use crate::stages::Stage;
+use eframe::egui::{Context, Key, KeyboardShortcut, ModifierNames, Modifiers, ThemePreference};
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+/// The menus of the bar.
+pub const MENUS: [&str; 6] = ["File", "Edit", "View", "Render", "Stage", "Help"];
+
+type Off = Box<dyn Fn(&Snapshot) -> Option<String> + Send + Sync>;
+type On = Box<dyn Fn(&Snapshot) -> bool + Send + Sync>;
+
+/// All about a command.
+pub struct Row {
+    pub command: Command,
+    pub name: &'static str,
+    pub help: &'static str,
+    pub keys: Option<KeyboardShortcut>,
+    /// The menu or submenu in which it stands, in the order of the table.
+    pub menu: Option<&'static str>,
+    /// A line separates it from the entry above.
+    pub has_line: bool,
+    /// The palette lists it.
+    pub is_listed: bool,
+    /// Other words by which the palette finds it.
+    pub synonyms: &'static str,
+    /// Why it cannot be used now, if so.
+    off: Off,
+    /// Whether what it switches is on; none if it is no switch.
+    on: Option<On>,
+}
+
+impl Row {
+    fn new(menu: Option<&'static str>, command: Command, [name, help]: [&'static str; 2]) -> Self {
+        Row {
+            command,
+            name,
+            help,
+            keys: None,
+            menu,
+            has_line: false,
+            is_listed: true,
+            synonyms: "",
+            off: Box::new(|_| None),
+            on: None,
+        }
+    }
+
+    fn keys(mut self, modifiers: Modifiers, key: Key) -> Self {
+        self.keys = Some(KeyboardShortcut::new(modifiers, key));
+        self
+    }
+
+    fn key(self, key: Key) -> Self {
+        self.keys(Modifiers::NONE, key)
+    }
+
+    fn line(mut self) -> Self {
+        self.has_line = true;
+        self
+    }
+
+    fn also(mut self, synonyms: &'static str) -> Self {
+        self.synonyms = synonyms;
+        self
+    }
+
+    /// For keys and buttons alone.
+    fn unlisted(mut self) -> Self {
+        self.is_listed = false;
+        self
+    }
+
+    fn off(mut self, off: impl Fn(&Snapshot) -> Option<String> + Send + Sync + 'static) -> Self {
+        self.off = Box::new(off);
+        self
+    }
+
+    /// Off unless `is_possible`, for this reason.
+    fn needs(
+        self,
+        is_possible: impl Fn(&Snapshot) -> bool + Send + Sync + 'static,
+        reason: &'static str,
+    ) -> Self {
+        self.off(move |snapshot| (!is_possible(snapshot)).then(|| reason.to_owned()))
+    }
+
+    fn on(mut self, on: impl Fn(&Snapshot) -> bool + Send + Sync + 'static) -> Self {
+        self.on = Some(Box::new(on));
+        self
+    }
+}
+
+const CTRL: Modifiers = Modifiers::COMMAND;
+const SHIFT: Modifiers = Modifiers::SHIFT;
+const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+/// The keys of the digits 1 to 9.
+const DIGITS: [Key; 9] =
+    [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
+
+/// All commands but places, menu by menu in the order of the menus.
+pub static ROWS: LazyLock<Vec<Row>> =
+    LazyLock::new(|| plain_rows().into_iter().chain(family_rows()).collect());
+
+/// Makes the commands and their rows. A row has the command, its name, one sentence about it, what it does, and more.
+macro_rules! table {
+    (
+        families { $($(#[$about:meta])* $family:ident($value:ty),)* }
+        $([$menu:expr] $($command:ident $name:expr, $help:expr
+            $(, $method:ident($($argument:expr),*))*;)*)*
+    ) => {
+        /// A thing that can be done. Its row in [`ROWS`] says all about it; places, such as stages and files, have none.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum Command {
+            $($(#[$about])* $family($value),)*
+            $($($command,)*)*
+        }
+
+        fn plain_rows() -> Vec<Row> {
+            vec![$($(Row::new($menu, Command::$command, [$name, $help])$(.$method($($argument),*))*,)*)*]
+        }
+    };
+}
+
+// A row takes a few lines; rustfmt would give each argument one.
+#[rustfmt::skip]
+table! {
+    families {
+        /// Opens the dialog of `Save` with this format.
+        SaveAs(OutputFormat),
+        Show(Show),
+        Theme(ThemePreference),
+        Device(Device),
+        Channel(Channel),
+        Stage(&'static Stage),
+        Extreme(&'static Case),
+        /// Opens a recent file.
+        Recent(usize),
+        Bookmark(usize),
+        /// Looks at a kept picture, counted from 0.
+        Kept(usize),
+        /// Goes to the field of this name in the left panel.
+        Field(&'static str),
+    }
+
+    [Some("File")]
+    Open "Open…", "Opens a scene, a picture or a film, and goes on with it", keys(CTRL, Key::O),
+        also("load import resume");
+    CheckPicture "Check my picture…", "Finds the mistake in a picture that your own program has rendered",
+        also("wrong mistake homework verify compare");
+    Save "Save…", "Saves the picture, the film or the scene", keys(CTRL, Key::S), line(),
+        needs(is_live, KEPT_IS_SHOWN), also("export png ppm exr toml download film scene");
+    ShowInFolder "Show in folder", "Opens the folder of the file that was saved or opened last",
+        needs(|f| !f.model.remembered.recent.is_empty(), "Nothing has been saved or opened yet"),
+        also("directory explorer finder");
+    CopyPicture "Copy picture", "Copies the picture at full size", keys(CTRL, Key::C),
+        needs(is_live, KEPT_IS_SHOWN), also("clipboard");
+    CopyCommand "Copy as command", "Copies the command line that renders this picture",
+        keys(CTRL_SHIFT, Key::C), also("batch terminal shell clipboard");
+    Fresh "Start fresh", "Goes back to the first picture, with the usual settings; Undo returns", line();
+    Quit "Quit", "Closes the window; the next one begins where this one ends", keys(CTRL, Key::Q),
+        also("close exit");
+
+    [Some("Edit")]
+    Undo "Undo", "Takes back the last change", keys(CTRL, Key::Z),
+        needs(|f| f.undo.is_some(), "Nothing has been changed yet"), also("back lost");
+    Redo "Redo", "Makes that change again", keys(CTRL_SHIFT, Key::Z),
+        needs(|f| f.redo.is_some(), "Nothing has been undone");
+    ResetAll "Reset everything", "Returns to the stage as it is in the book; Undo brings your changes back",
+        needs(|f| f.document().is_changed(), "This is the stage as it is in the book"),
+        also("original lost back");
+    AddSphere "Add a sphere", "Puts a sphere where the pointer is", key(Key::Insert), line(),
+        off(|f| f.no_rays().map(str::to_owned)), also("new ball");
+    DuplicateSphere "Duplicate the sphere", "Puts a copy beside the selected sphere", keys(CTRL, Key::D),
+        needs(has_selection, NO_SPHERE), also("copy ball");
+    DeleteSphere "Delete the sphere", "Removes the selected sphere", key(Key::Delete),
+        needs(has_selection, NO_SPHERE), also("remove ball");
+    SkyColours "Sky colours…", "Changes the two colours that the sky fades between",
+        off(|f| f.no_rays().map(str::to_owned)), also("background light gradient");
+    Home "Reset the camera", "Returns to the camera and lens of the stage", key(Key::Home), line(),
+        needs(|f| f.document().camera != f.document().origin.recipe.camera, "This is the camera of the stage"),
+        also("home lost back original");
+
+    [Some("View")]
+    Fit "Fit in the window", "Shows the whole picture as large as possible", key(Key::F), line();
+    ActualSize "Actual size", "One pixel of the picture per pixel of the screen", key(Key::Num1),
+        also("100 % zoom");
+    Controls "Controls", "Shows or hides camera, lens and sphere at the left", key(Key::L), line(),
+        off(no_presentation), on(|f| f.model.remembered.has_controls), also("left panel camera lens");
+    Info "Stage and pixel", "Shows or hides the text and the numbers at the right", key(Key::I),
+        off(no_presentation), on(|f| f.model.remembered.has_info), also("right panel text");
+    KeptDock "Kept pictures", "Opens the dock with the pictures that you have kept", keys(SHIFT, Key::M),
+        off(no_presentation), on(|f| f.model.remembered.dock == Some(Dock::Kept)),
+        also("slot snapshot compare");
+    LanesDock "Lanes", "Opens the dock with what each lane does, step by step", key(Key::N),
+        off(no_presentation), on(|f| f.model.remembered.dock == Some(Dock::Lanes)), also("simd avx packet");
+    ErrorDock "Error", "Opens the dock with the error over time", key(Key::P), off(no_presentation),
+        on(|f| f.model.remembered.dock == Some(Dock::Error)), also("plot convergence noise quality");
+    Panels "Only the picture", "Hides all panels; again shows them", key(Key::Tab),
+        on(|f| !f.model.remembered.has_panels), also("hide panels");
+    Present "Present", "Full screen with large captions, for a lecture; Escape ends it", key(Key::F5), line(),
+        on(|f| f.model.presentation.is_some()), also("lecture slides projector beamer");
+    FullScreen "Full screen", "Fills the screen with the window", key(Key::F11), on(|f| f.model.is_full_screen);
+
+    [Some("Bookmarks")]
+    AddBookmark "Bookmark this camera", "Keeps this camera and lens to jump back to", keys(CTRL, Key::B),
+        off(|f| f.no_rays().map(str::to_owned)), also("view position");
+
+    [Some("Render")]
+    Pause "Pause or go on", "Stops and continues; when done, goes on to half the error. No sample is lost",
+        key(Key::Space),
+        needs(
+            |f| f.is_working() || f.model.is_paused || f.further().is_some(),
+            "More samples would change nothing"
+        ),
+        on(|f| f.model.is_paused), also("stop resume continue");
+    Restart "Start again", "Throws the samples away and begins anew", key(Key::R);
+    SwitchDevice "Switch CPU and GPU", "The same picture goes on with the other device", key(Key::G), line(),
+        off(|_| Device::Gpu.unavailable());
+    Reference "Reference (f64)", "Traces with twice the digits, slowly, to show rounding errors",
+        on(|f| f.model.remembered.device == Device::Reference), also("double precision");
+    Keep "Keep this picture", "Keeps a copy with all its samples, to compare with", key(Key::M), line(),
+        needs(is_live, KEPT_IS_SHOWN), also("slot snapshot compare");
+
+    [Some("Stage")]
+    Stages "All stages…", "Every picture of the book, with a small image; type to search", key(Key::O),
+        also("list section chapter");
+    PreviousStage "Previous stage", "One step back in the book", key(Key::PageUp),
+        needs(|f| f.model.neighbour(false).is_some(), "This is the first stage");
+    NextStage "Next stage", "One step forward in the book", key(Key::PageDown),
+        needs(|f| f.model.neighbour(true).is_some(), "This is the last stage");
+    ShowMe "Show me", "Sets zoom, view or wipe so that you see what to look for; again returns", key(Key::H),
+        line(),
+        off(|f| match f.document().stage() {
+            Some(stage) => f.model.useless_show(Show::of_means(stage.sight.means)),
+            None => Some("Only stages of the book name something to look for".to_owned()),
+        }),
+        on(|f| f.has_sight);
+    Wipe "Wipe", "Drag a divider between this stage and the one that it is compared with", key(Key::C),
+        off(|f| f.model.nothing_to_compare()),
+        on(|f| f.model.view.mode() == Some(Mode::Wipe) && f.model.view.with() == With::Stage),
+        also("slot snapshot compare");
+    Difference "Difference", "Shows where the two differ, and by how much", key(Key::X),
+        off(|f| f.model.nothing_to_compare()),
+        on(|f| f.model.view.mode() == Some(Mode::Difference) && f.model.view.compared_kept().is_none()),
+        also("slot snapshot compare subtract");
+    BookArithmetic "The book’s arithmetic", "Wipes against the same picture with the book’s own formulas",
+        needs(
+            |f| f.document().origin.is_other_by_the_book(),
+            "This picture already has the book’s arithmetic, or traces no rays"
+        ),
+        on(|f| f.model.view.mode().is_some() && f.model.view.with() == With::Book),
+        also("rounding f64 precision");
+    ListPaths "Paths of a pixel", "Shows the paths of the pixel under the pointer, ray by ray", key(Key::T),
+        line(),
+        off(|f| match f.no_rays() {
+            Some(reason) => Some(reason.to_owned()),
+            None if !is_live(f) => Some(KEPT_IS_SHOWN.to_owned()),
+            None => (!f.has_pixel).then(|| "Point at the picture first".to_owned()),
+        }),
+        also("rays bounce trace");
+    Code "Code", "Shows the lines of the tracer that are new in this stage", key(Key::K), off(no_presentation),
+        on(|f| f.model.shows(Tab::Code)), also("source rust wgsl program");
+    Book "Read in the book", "Opens this section in the browser", also("web section");
+    Companion "Read in the companion",
+        "Opens the companion at this stage; writes it first, which takes 3 seconds", also("web page explain");
+    ExtremeScenes "Extreme scenes…",
+        "Opens the list of stages at its end: dust, soap bubbles, a planet’s pole and others", line(),
+        also("stress stiff numerical");
+
+    [Some("Help")]
+    FirstSteps "First steps", "Brings back the card with three things to try", off(no_presentation),
+        on(|f| f.model.has_first_steps), also("tutorial introduction");
+    Help "Keys and mouse", "All keys, and what the mouse does", key(Key::F1), also("shortcuts keyboard help");
+    Palette "Find a command…", "Type what you want to do", keys(CTRL, Key::P), also("palette search");
+    About "About Weekender", "Version, licences, folder of the log, and how to report a fault",
+        also("version licence report bug");
+
+    [None]
+    Brighter "Brighter", "Shows the picture with half a stop more light; files are saved without it",
+        key(Key::Plus), off(|f| f.model.no_exposure()), also("exposure bright dim");
+    Darker "Darker", "Shows the picture with half a stop less light; files are saved without it",
+        key(Key::Minus), off(|f| f.model.no_exposure()), also("exposure dim");
+    NoExposure "As bright as it is saved", "Shows the picture without exposure", key(Key::Num0),
+        off(|f| f.model.no_exposure()), also("exposure bright dim reset");
+    ZoomIn "Zoom in", "Ctrl and the wheel zoom at the pointer", key(Key::CloseBracket);
+    ZoomOut "Zoom out", "Ctrl and the wheel zoom at the pointer", key(Key::OpenBracket);
+    Denoise "Denoise", "Filters the noise away and says how wrong the result is; films are saved as they are",
+        key(Key::V),
+        needs(|f| f.document().settings.estimate_error, "The film has one half; denoising compares two"),
+        on(|f| f.model.view.is_denoised), also("filter smooth noise clean oidn");
+    NextSphere "Next sphere", "Selects the next sphere of the scene", key(Key::Period),
+        needs(has_spheres, "There is no sphere in this scene"), also("select");
+    PreviousSphere "Previous sphere", "Selects the previous sphere of the scene", key(Key::Comma),
+        needs(has_spheres, "There is no sphere in this scene"), also("select");
+    FocusSphere "Focus on the sphere", "Sets the focus distance to the nearest point of the selected sphere",
+        needs(has_selection, NO_SPHERE), also("sharp depth of field");
+    Flip "Flip between the two", "Shows the traced picture and the kept one in turn", key(Key::J),
+        needs(has_kept, NOTHING_KEPT), on(|f| f.model.view.looked().is_some()), also("kept slot compare blink");
+    KeptWipe "Wipe with the kept picture", "Drag a divider between it and the picture", keys(SHIFT, Key::C),
+        needs(has_kept, NOTHING_KEPT),
+        on(|f| f.model.view.mode() == Some(Mode::Wipe) && f.model.view.compared_kept().is_some() && is_live(f)),
+        also("slot compare");
+    KeptDifference "Difference from the kept picture", "Subtracts it from the picture", keys(SHIFT, Key::X),
+        off(|f| f.model.not_subtractable()),
+        on(|f| f.model.view.mode() == Some(Mode::Difference) && f.model.view.compared_kept().is_some()),
+        also("slot compare subtract");
+    OnlyNoise "Is it only noise?", "Tests whether the two differ by more than chance", keys(SHIFT, Key::N),
+        off(|f| f.model.not_subtractable()), also("kept slot compare same");
+    RenderAtSize "Render at this size",
+        "Renders one pixel of the picture per pixel of the screen; the samples begin anew", unlisted();
+    StopSaving "Stop", "Gives up this render", unlisted();
+    Recover "Go on with it", "Shows it, and adds more samples", unlisted();
+    WholeCompanion "Write the full one",
+        "Renders its pictures at full size and without noise, which takes some minutes", unlisted();
+    StopCompanion "Stop", "Leaves out the pictures that are missing", unlisted();
+    GoOnFromKept "Go on from it", "Makes it the picture that is traced, and adds more samples",
+        needs(has_kept, NOTHING_KEPT), unlisted();
+    DeleteKept "Delete", "Deletes the kept picture", needs(has_kept, NOTHING_KEPT), unlisted();
+    NextRay "Next ray", "", key(Key::ArrowRight), needs(|f| f.has_paths, NO_PATHS), unlisted();
+    PreviousRay "Previous ray", "", key(Key::ArrowLeft), needs(|f| f.has_paths, NO_PATHS), unlisted();
+    ClearPaths "Close the paths", "", unlisted();
+    FocusControls "Into the controls", "", key(Key::F6), unlisted();
+    Blank "Blank the screen", "", key(Key::B),
+        needs(|f| f.model.presentation.is_some(), "Only a presentation can be blanked; F5 begins one"),
+        unlisted();
+}
+
+/// The rows of commands that differ in a value.
+fn family_rows() -> Vec<Row> {
+    let mut rows = Vec::new();
+    for (show, digit) in Show::ALL.into_iter().zip(DIGITS) {
+        let [name, help, synonyms] = show.words();
+        let row = Row::new(Some("Show"), Command::Show(show), [name, help]);
+        let is_on =
+            move |view: &ViewState| view.show() == show && (show != Show::Picture || view.mode().is_none());
+        let row = row.keys(CTRL, digit).also(synonyms).off(move |f| f.model.useless_show(show));
+        rows.push(row.on(move |f| is_on(&f.model.view)));
+    }
+    for (theme, name, help, synonyms) in [
+        (ThemePreference::System, "As the system", "Follows the system", "theme"),
+        (ThemePreference::Dark, "Dark", "Light text on dark panels", "theme night"),
+        (ThemePreference::Light, "Light", "Dark text on light panels", "theme bright"),
+    ] {
+        let row = Row::new(Some("Theme"), Command::Theme(theme), [name, help]);
+        rows.push(row.on(move |f| f.model.remembered.theme == theme).also(synonyms));
+    }
+    for channel in Channel::ALL {
+        let words = [channel.name(), "Shows one channel alone, as grey; again shows all"];
+        let row = Row::new(None, Command::Channel(channel), words).keys(SHIFT, channel.key());
+        let row = row.off(|f| f.model.no_exposure()).also("channel rgb");
+        rows.push(row.on(move |f| f.model.view.tone.channel == Some(channel)));
+    }
+    for device in [Device::Cpu, Device::Gpu, Device::Both] {
+        let name = if device == Device::Both { "CPU and GPU together" } else { device.label() };
+        let row = Row::new(None, Command::Device(device), [name, device.help()]);
+        let row = row.off(move |_| device.unavailable()).also("device trace");
+        rows.push(row.on(move |f| f.model.remembered.device == device));
+    }
+    for (format, name, modifiers, key) in [
+        (OutputFormat::P6, "Save as PPM…", CTRL_SHIFT, Key::S),
+        (OutputFormat::Exr, "Save film…", CTRL, Key::E),
+    ] {
+        let row = Row::new(None, Command::SaveAs(format), [name, ""]);
+        rows.push(row.keys(modifiers, key).needs(is_live, KEPT_IS_SHOWN).unlisted());
+    }
+    for (place, digit) in DIGITS.into_iter().enumerate() {
+        let row = Row::new(None, Command::Kept(place), ["", "Shows it instead of the picture"]);
+        let is_there = move |f: &Snapshot| f.model.view.kept.get(place).is_some();
+        let row = row.keys(Modifiers::ALT, digit).needs(is_there, "No picture is kept under this number");
+        rows.push(row.unlisted());
+    }
+    rows
+}
+
+const NO_SPHERE: &str = "No sphere is selected; click one";
+const NOTHING_KEPT: &str = "No picture is kept; M keeps this one";
+const NO_PATHS: &str = "No paths are shown; point at the picture and press T";
+
+const KEPT_IS_SHOWN: &str = "A kept picture is shown; Escape returns to the one that is traced";
+
+fn is_live(snapshot: &Snapshot) -> bool {
+    snapshot.model.view.looked().is_none()
+}
+
+fn has_selection(snapshot: &Snapshot) -> bool {
+    snapshot.model.selected.is_some()
+}
+
+fn has_spheres(snapshot: &Snapshot) -> bool {
+    !snapshot.document().scene().spheres.is_empty()
+}
+
+fn has_kept(snapshot: &Snapshot) -> bool {
+    snapshot.model.view.kept.chosen().is_some()
+}
+
+fn no_presentation(snapshot: &Snapshot) -> Option<String> {
+    snapshot.model.presentation.map(|_| "A presentation has no panels; Escape ends it".to_owned())
+}
+
+impl Command {
+    /// Its row in the table; none for a place.
+    pub fn row(self) -> Option<&'static Row> {
+        ROWS.iter().find(|row| row.command == self)
+    }
+
+    /// Without what only the window knows, such as the name of a bookmark: see [`Snapshot::name`].
+    pub fn name(self) -> String {
+        match self {
+            Command::Stage(stage) => format!("{} {}", stage.section, stage.title),
+            Command::Extreme(case) => case.title().to_owned(),
+            Command::Recent(place) => format!("Recent file {}", place + 1),
+            Command::Bookmark(place) => format!("Bookmark {}", place + 1),
+            Command::Kept(place) => format!("Kept picture {}", place + 1),
+            Command::Field(name) => name.to_owned(),
+            _ => self.row().map_or_else(String::new, |row| row.name.to_owned()),
+        }
+    }
+
+    /// One sentence about it.
+    pub fn help(self) -> &'static str {
+        match self {
+            Command::Stage(stage) => stage.what_is_new,
+            Command::Extreme(case) => case.watch.map_or("An extreme scene", |watch| watch.look_for),
+            Command::Recent(_) => "Opens it again",
+            Command::Bookmark(_) => "Jumps to this camera",
+            Command::Field(_) => "Goes to this field of the controls",
+            _ => self.row().map_or("", |row| row.help),
+        }
+    }
+
+    /// As shown to the user, such as `Ctrl+O`.
+    pub fn keys(self, context: &Context) -> Option<String> {
+        let keys = self.row()?.keys?;
+        // The font has no arrows.
+        let is_short = !matches!(keys.logical_key, Key::ArrowLeft | Key::ArrowRight);
+        let names = ModifierNames { is_short, ..ModifierNames::NAMES };
+        Some(keys.format(&names, context.os().is_mac()).replace("Page", "Page "))
+    }
+
+    /// Opens a dialog, which takes the keys that follow.
+    pub fn opens_dialog(self) -> bool {
+        matches!(self, Command::Help | Command::About) || self.name().ends_with('…')
+    }
+}
+
+impl Snapshot {
+    /// The commands for the files that were opened or saved last, newest first.
+    pub fn recent(&self) -> impl Iterator<Item = Command> {
+        (0..self.model.remembered.recent.len()).map(Command::Recent)
+    }
+
+    /// The commands that go to the bookmarks, in their order.
+    pub fn bookmarks(&self) -> impl Iterator<Item = Command> {
+        (0..self.model.remembered.bookmarks.len()).map(Command::Bookmark)
+    }
+
+    /// The file that a command opens, if it was opened or saved before.
+    pub fn path(&self, command: Command) -> Option<&Path> {
+        let Command::Recent(place) = command else { return None };
+        self.model.remembered.recent.get(place).map(PathBuf::as_path)
+    }
+
+    /// The name of a command, with the change that it undoes, the file that it opens or the bookmark that it goes to.
+    pub fn name(&self, command: Command) -> String {
+        let Model { view, remembered, .. } = &self.model;
+        let named = match command {
+            Command::Undo => self.undo.map(|change| format!("Undo: {change}")),
+            Command::Redo => self.redo.map(|change| format!("Redo: {change}")),
+            Command::Kept(place) => view.kept.get(place).map(|kept| kept.document.title()),
+            Command::Bookmark(place) => remembered.bookmarks.get(place).map(|bookmark| bookmark.name.clone()),
+            Command::Recent(_) => {
+                self.path(command).and_then(Path::file_name).map(|name| name.display().to_string())
+            }
+            _ => None,
+        };
+        named.unwrap_or_else(|| command.name())
+    }
+
+    /// Why a command cannot be used now, if so.
+    pub fn disabled_reason(&self, command: Command) -> Option<String> {
+        command.row().and_then(|row| (row.off)(self))
+    }
+
+    /// Whether what a command switches is on; none if it is no switch.
+    pub fn switch(&self, command: Command) -> Option<bool> {
+        match command {
+            Command::Stage(stage) => Some(self.document().stage() == Some(stage)),
+            Command::Extreme(case) => Some(self.document().case() == Some(case)),
+            _ => command.row()?.on.as_ref().map(|on| on(self)),
+        }
+    }
+
+    /// Whether what a command switches is on.
+    pub fn is_on(&self, command: Command) -> bool {
+        self.switch(command).unwrap_or(false)
+    }
+}

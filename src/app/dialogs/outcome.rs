@@ -1,0 +1,58 @@
+//! How a dialog ends, and what it was about.
+
+use crate::job::output::OutputFormat;
+use std::path::PathBuf;
+
+/// What happens to a dialog after a frame.
+pub enum Outcome {
+    Stay,
+    Close,
+    /// It closes: the user chose a file.
+    Named(Purpose, PathBuf),
+    /// It closes: this is saved, the picture with this size.
+    Save(What, [u32; 2], PathBuf),
+    /// It closes: the picture gets this size.
+    Size([u32; 2]),
+}
+
+/// What is saved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum What {
+    Picture(OutputFormat),
+    Scene,
+}
+
+impl What {
+    /// All of them, with name, use and ending.
+    pub(super) const ALL: [(What, &str, &str, &str); 5] = [
+        (What::Picture(OutputFormat::Png), "PNG picture", "To look at; remembers how it was made", "png"),
+        (What::Picture(OutputFormat::P6), "PPM picture (P6)", "The format of the book", "ppm"),
+        (What::Picture(OutputFormat::Pfm), "PFM picture", "Linear numbers for other programs", "pfm"),
+        (What::Picture(OutputFormat::Exr), "Film (EXR)", "All light and samples; can go on later", "exr"),
+        (What::Scene, "Scene (TOML)", "Text to edit; no picture in it", "toml"),
+    ];
+
+    pub(super) fn ending(self) -> &'static str {
+        What::ALL.into_iter().find(|(what, ..)| *what == self).map_or("", |(_, _, _, ending)| ending)
+    }
+}
+
+/// What a file or a folder is chosen for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    Open,
+    /// To check the picture of the user's own program.
+    Check,
+    /// The folder in which the dialog of saving saves.
+    Folder,
+}
+
+impl Purpose {
+    pub(super) fn title(self) -> &'static str {
+        match self {
+            Purpose::Open => "Open",
+            Purpose::Check => "Check my picture",
+            Purpose::Folder => "Folder",
+        }
+    }
+}

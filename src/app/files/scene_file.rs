@@ -1,0 +1,59 @@
+//! The scene file of the picture is read again when another program has changed it.
+
+use crate::app::model::{Origin, Source, stamp_of};
+use crate::app::toolkit::Answers;
+use crate::job::recipe::{Recipe, file};
+use eframe::egui::Context;
+use std::path::Path;
+use std::sync::{Arc, Weak};
+use std::thread;
+use std::time::Duration;
+
+const LOOKS_APART: Duration = Duration::from_millis(500);
+
+#[derive(Default)]
+pub struct SceneFile {
+    /// The origin whose file is watched, until the token is dropped.
+    watched: Option<(Arc<Origin>, Arc<()>)>,
+    pub reread: Answers<Recipe>,
+}
+
+impl SceneFile {
+    pub fn watch(&mut self, context: &Context, origin: &Arc<Origin>) {
+        if self.watched.as_ref().is_some_and(|(watched, _)| Arc::ptr_eq(watched, origin)) {
+            return;
+        }
+        *self = SceneFile::default();
+        let Source::File(path) = &origin.source else { return };
+        let token = Arc::new(());
+        let (path, answer) = (path.clone(), self.reread.answer(context));
+        let needed = Arc::downgrade(&token);
+        let read = move |path: &Path| {
+            let recipe = file::load(path).map_err(|error| error.to_string());
+            let recipe = recipe.and_then(|recipe| match recipe.job() {
+                Ok(_) => Ok(recipe),
+                Err(error) => Err(error.to_string()),
+            });
+            answer.give(recipe);
+        };
+        let look = move || look_repeatedly(&path, &needed, read);
+        if let Err(error) = thread::Builder::new().name("scene file".to_owned()).spawn(look) {
+            log::warn!("changes of the scene file will not be noticed: {error}");
+        }
+        self.watched = Some((Arc::clone(origin), token));
+    }
+}
+
+/// Reports each change of the file once it has settled.
+fn look_repeatedly(path: &Path, needed: &Weak<()>, report: impl Fn(&Path)) {
+    let (mut known, mut last) = (stamp_of(path), stamp_of(path));
+    while needed.strong_count() > 0 {
+        thread::sleep(LOOKS_APART);
+        let now = stamp_of(path);
+        if now == last && now != known && now.is_some() {
+            known.clone_from(&now);
+            report(path);
+        }
+        last = now;
+    }
+}

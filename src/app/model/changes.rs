@@ -1,0 +1,182 @@
+//! Tracks what the user has changed since the previous frame: moves, gestures and undo steps.
+
+use super::Document;
+use eframe::egui::Context;
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+/// After this long without a move the picture is rendered at its full size.
+const SETTLE: Duration = Duration::from_millis(160);
+
+/// Maximum number of undo steps.
+const STEPS: usize = 100;
+
+/// The history of the document.
+pub struct Changes {
+    /// The document at the end of each change or gesture, oldest first.
+    done: VecDeque<Document>,
+    /// The documents that were undone, the next one to redo last.
+    undone: Vec<Document>,
+    /// The document of the frame before.
+    pub last: Document,
+    moved: Option<Instant>,
+    /// A move was noted in this frame, however long the frame takes.
+    has_moved: bool,
+    /// Something is being moved, or a button of the mouse is held.
+    pub is_in_gesture: bool,
+}
+
+impl Changes {
+    /// A history that starts with `document`.
+    pub fn new(document: Document) -> Self {
+        let (done, undone) = ([document.clone()].into(), Vec::new());
+        Changes { done, undone, last: document, moved: None, has_moved: false, is_in_gesture: false }
+    }
+
+    /// What undo and redo would change, in words.
+    pub fn labels(&self, document: &Document) -> [Option<&'static str>; 2] {
+        [self.earlier(document), self.later(document)].map(|other| Some(document.difference(other?)))
+    }
+
+    fn earlier(&self, document: &Document) -> Option<&Document> {
+        self.done.iter().rev().take(2).find(|done| *done != document)
+    }
+
+    fn later(&self, document: &Document) -> Option<&Document> {
+        self.undone.last().filter(|_| self.done.back() == Some(document))
+    }
+
+    /// Undoes the last change.
+    pub fn undo(&mut self, document: &mut Document) {
+        let Some(earlier) = self.earlier(document).cloned() else { return };
+        if self.done.back() == Some(&*document) {
+            self.done.pop_back();
+        }
+        self.undone.push(document.clone());
+        restore(document, earlier);
+    }
+
+    /// Redoes the change that was undone last.
+    pub fn redo(&mut self, document: &mut Document) {
+        let Some(later) = self.later(document).cloned() else { return };
+        self.done.extend(self.undone.pop());
+        restore(document, later);
+    }
+
+    /// Notes a change by hand, which is previewed first.
+    pub fn note_move(&mut self) {
+        self.moved = Some(Instant::now());
+        self.has_moved = true;
+    }
+
+    /// Ends the move. The changes of a command are not part of it.
+    pub fn end_move(&mut self) {
+        end_step(&mut self.done, &self.last);
+        (self.moved, self.has_moved, self.is_in_gesture) = (None, false, false);
+    }
+
+    /// Whether something is being moved.
+    pub fn is_moving(&self) -> bool {
+        self.moved.is_some_and(|at| at.elapsed() < SETTLE)
+    }
+
+    /// Notes what has changed in this frame. Returns whether the document now needs a different film.
+    pub fn follow(&mut self, context: &Context, document: &Document) -> bool {
+        let is_by_hand = context.input(|input| input.pointer.any_down());
+        let is_other_film = !document.has_same_film(&self.last);
+        if *document != self.last && is_other_film && is_by_hand {
+            self.note_move();
+        }
+        self.last = document.clone();
+        self.is_in_gesture = std::mem::take(&mut self.has_moved) || self.is_moving() || is_by_hand;
+        if self.done.back() != Some(document) {
+            self.undone.clear();
+        }
+        if !self.is_in_gesture {
+            end_step(&mut self.done, document);
+        }
+        is_other_film
+    }
+}
+
+/// Ends a step at `document`, if it has changed since the last one.
+fn end_step(done: &mut VecDeque<Document>, document: &Document) {
+    if done.back() != Some(document) {
+        done.push_back(document.clone());
+        done.drain(..done.len().saturating_sub(STEPS));
+    }
+}
+
+/// Replaces `document` by another state of it. A size that follows the viewport or the book stays.
+fn restore(document: &mut Document, state: Document) {
+    let before = std::mem::replace(document, state);
+    let follows = !before.has_own_size && !document.has_own_size;
+    if follows && std::sync::Arc::ptr_eq(&before.origin, &document.origin) {
+        document.set_size(before.size());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::Origin;
+    use eframe::egui::{Event, Modifiers, PointerButton, Pos2, RawInput};
+
+    #[test]
+    fn a_move_with_long_frames_is_one_step() {
+        let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
+        let mut changes = Changes::new(document.clone());
+        let first = document.camera;
+        for step in 1..=3 {
+            changes.note_move();
+            changes.moved = Instant::now().checked_sub(2 * SETTLE);
+            document.camera.vfov_degrees += f64::from(step);
+            assert!(changes.follow(&context, &document));
+        }
+        changes.undo(&mut document);
+        assert_eq!(document.camera, first);
+        assert!(changes.earlier(&document).is_none());
+    }
+
+    #[test]
+    fn a_change_that_needs_no_other_film_can_be_taken_back_too() {
+        let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
+        let mut changes = Changes::new(document.clone());
+        document.stop.seconds = Some(7.0);
+        assert!(!changes.follow(&context, &document), "the same film goes on");
+        assert!(changes.earlier(&document).is_some());
+        changes.undo(&mut document);
+        assert_eq!(document.stop.seconds, None);
+    }
+
+    /// Presses or releases the button of the pointer.
+    fn press(context: &Context, pressed: bool) {
+        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+        let event = Event::PointerButton { pos: Pos2::ZERO, button, pressed, modifiers };
+        let input = RawInput { events: vec![event], ..RawInput::default() };
+        context.run_ui(input, |_| {}).textures_delta.clear();
+    }
+
+    #[test]
+    fn what_is_changed_while_the_button_is_held_is_one_step() {
+        let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
+        let mut changes = Changes::new(document.clone());
+        press(&context, true);
+        assert!(!changes.follow(&context, &document), "nothing has changed yet");
+        for seconds in [7.0, 8.0] {
+            document.stop.seconds = Some(seconds);
+            assert!(!changes.follow(&context, &document));
+            assert!(changes.moved.is_none(), "the film goes on, so nothing is previewed");
+        }
+        press(&context, false);
+        changes.follow(&context, &document);
+        document.stop.seconds = Some(9.0);
+        changes.follow(&context, &document);
+        for expected in [Some(8.0), None] {
+            changes.undo(&mut document);
+            changes.follow(&context, &document);
+            assert_eq!(document.stop.seconds, expected);
+        }
+        assert!(changes.earlier(&document).is_none());
+    }
+}

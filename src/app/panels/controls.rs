@@ -1,0 +1,387 @@
+//! The left panel: camera, lens, sphere, size and samples, tracer.
+
+use crate::app::commands::{Command, PanelContext};
+use crate::app::model::spheres::Selected;
+use crate::app::model::{Body, Device, Document, Edit, Remembered, Sizing, core_count, lane_counts};
+use crate::app::toolkit::widgets::{
+    About, Header, Number, above, check, colour, command_button, entry, fold, group, hint, list, panel_line,
+    point_words, row, switch, vector,
+};
+use crate::job::render::{DEPTH_LIMIT, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
+use crate::progressive::Stop;
+use crate::scene::{
+    Camera, DEFOCUS_LIMIT_DEGREES, FOCUS_LIMITS, LENGTH_LIMIT, Material, RADIUS_LIMITS,
+    REFRACTION_INDEX_LIMITS, VFOV_LIMITS_DEGREES,
+};
+use crate::stages::Shading;
+use eframe::egui::Ui;
+use glam::DVec3;
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+
+/// What a coordinate can be, scene units.
+const POSITIONS: RangeInclusive<f64> = -LENGTH_LIMIT..=LENGTH_LIMIT;
+
+/// The first chapter whose pictures need another up vector or a lens.
+const LENS_CHAPTER: u32 = 12;
+
+/// Draws the panel.
+pub fn ui(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx: &PanelContext) {
+    let has_rays = document.no_rays().is_none();
+    if has_rays {
+        camera(ui, document);
+        lens(ui, document);
+        sphere(ui, document, cx);
+        panel_line(ui);
+    }
+    ui.spacing_mut().item_spacing.y = 0.0;
+    size_and_samples(ui, document, remembered, cx);
+    if has_rays {
+        tracer(ui, document, remembered);
+    }
+}
+
+/// Whether the picture is a stage before the chapters about the camera.
+fn is_early(document: &Document) -> bool {
+    let chapter = document.stage().and_then(|stage| stage.section.split('.').next()?.parse().ok());
+    chapter.is_some_and(|chapter: u32| chapter < LENS_CHAPTER)
+}
+
+fn camera(ui: &mut Ui, document: &mut Document) {
+    let is_early = is_early(document);
+    let (original, camera) = (document.origin.recipe.camera, &mut document.camera);
+    let Camera { defocus_angle_degrees, focus_distance, .. } = *camera;
+    let home = Camera { defocus_angle_degrees, focus_distance, ..original };
+    let reset = (*camera != home).then_some("Reset camera");
+    let header = Header { title: "Camera", reset, ..Header::default() };
+    let is_reset = group(ui, header, |ui| {
+        let help = "How wide the camera sees, from the lower to the upper edge, in degrees (vfov)";
+        let [narrowest, widest] = VFOV_LIMITS_DEGREES;
+        let number = Number::new(About::new("Field of view", help), narrowest..=widest);
+        number.unit("°").slider(ui, &mut camera.vfov_degrees, narrowest..=widest, false);
+        let summary = point_words(camera.look_from);
+        let header = Header { title: "Position", summary: &summary, is_minor: true, ..Header::default() };
+        fold(ui, header, false, |ui| position(ui, camera, is_early));
+    });
+    if is_reset {
+        *camera = home;
+    }
+}
+
+fn position(ui: &mut Ui, camera: &mut Camera, is_early: bool) {
+    let speed = (camera.look_from.distance(camera.look_at) * 0.005).max(1e-4);
+    let about = About::new("Look from", "Where the eye is, in units of the scene (lookfrom)");
+    vector(ui, about, &mut camera.look_from, POSITIONS, speed);
+    let about = About::new("Look at", "The point in the middle of the picture (lookat)");
+    vector(ui, about, &mut camera.look_at, POSITIONS, speed);
+    if !is_early {
+        let about = About::new("Up", "Which way is up in the picture; the length does not matter (vup)");
+        vector(ui, about, &mut camera.vup, POSITIONS, 0.01);
+    }
+}
+
+fn lens(ui: &mut Ui, document: &mut Document) {
+    let is_early = is_early(document);
+    let (original, camera) = (document.origin.recipe.camera, &mut document.camera);
+    let Camera { defocus_angle_degrees, focus_distance, .. } = original;
+    let home = Camera { defocus_angle_degrees, focus_distance, ..*camera };
+    let summary = if camera.defocus_angle_degrees == 0.0 { "pinhole" } else { "" };
+    let reset = (*camera != home).then_some("Reset lens");
+    let header = Header { title: "Lens", summary, reset, ..Header::default() };
+    let controls = |ui: &mut Ui| lens_controls(ui, camera, defocus_angle_degrees);
+    let is_reset = if is_early { fold(ui, header, false, controls) } else { group(ui, header, controls) };
+    if is_reset {
+        *camera = home;
+    }
+}
+
+fn lens_controls(ui: &mut Ui, camera: &mut Camera, original: f64) {
+    /// The widest lens of the slider blurs what is far away by this share of the picture's height.
+    const BLUR: f64 = 0.1;
+    let help = "How wide the lens is open: 0 is a pinhole, which is sharp everywhere (defocus_angle)";
+    let limits = 0.0..=DEFOCUS_LIMIT_DEGREES.next_down();
+    let widest = 2.0 * (BLUR * (camera.vfov_degrees.to_radians() / 2.0).tan()).atan().to_degrees();
+    let number = Number::new(About::new("Defocus angle", help), limits).unit("°").speed(0.02);
+    number.slider(ui, &mut camera.defocus_angle_degrees, 0.0..=widest.max(original), true);
+    let help = "How far away things are sharp; Ctrl and a click on the picture set it too (focus_dist)";
+    let pinhole = (camera.defocus_angle_degrees == 0.0)
+        .then_some("A pinhole is sharp everywhere; set a defocus angle above 0 first");
+    let number = Number::new(About::new("Focus distance", help).disabled_if(pinhole), FOCUS_LIMITS);
+    let (usual, mut distance) =
+        (camera.look_from.distance(camera.look_at), camera.effective_focus_distance());
+    number.slider(ui, &mut distance, 0.1 * usual..=10.0 * usual, true);
+    if distance != camera.effective_focus_distance() {
+        camera.focus_distance = Some(distance);
+    }
+}
+
+fn sphere(ui: &mut Ui, document: &mut Document, cx: &PanelContext) {
+    let selected = Selected::of(&cx.model);
+    let title =
+        selected.as_ref().map_or("Sphere".to_owned(), |selected| format!("Sphere: {}", selected.material));
+    let reset = document.has_changed_scene().then_some("Reset spheres");
+    let is_reset = group(ui, Header { title: &title, reset, ..Header::default() }, |ui| {
+        let Some(selected) = selected else {
+            hint(ui, "Click a sphere in the picture to move or change it.");
+            return;
+        };
+        let body = body(ui, &selected, document);
+        if body != selected.body {
+            cx.edit(Edit::Change(selected.sphere, body));
+        }
+        ui.horizontal(|ui| {
+            for (name, command) in [
+                ("Focus", Command::FocusSphere),
+                ("Copy", Command::DuplicateSphere),
+                ("Delete", Command::DeleteSphere),
+            ] {
+                command_button(ui, cx, command, name);
+            }
+        });
+    });
+    if is_reset {
+        document.checked = Arc::clone(&document.origin.scene);
+    }
+}
+
+/// The values of the sphere after this frame.
+fn body(ui: &mut Ui, selected: &Selected, document: &Document) -> Body {
+    let mut body = selected.body;
+    let rules = document.rules();
+    let unused = match rules.shading {
+        Shading::Path | Shading::ImageGradient => None,
+        Shading::FirstHitRed => Some("In this stage every sphere is red"),
+        Shading::Normals => Some("In this stage the colour shows the normal"),
+    };
+    let strips = rules.reflectance_strips.then_some("In this stage the strips have the colours");
+    body.material = kind(ui, body.material, unused);
+    match &mut body.material {
+        Material::Lambertian { albedo } => colour(ui, albedo_words().disabled_if(unused.or(strips)), albedo),
+        Material::Metal { albedo, fuzz } => {
+            colour(ui, albedo_words().disabled_if(unused.or(strips)), albedo);
+            let about = About::new("Fuzz", "How rough the metal is: 0 is a mirror, 1 is brushed (fuzz)");
+            Number::new(about.disabled_if(unused), 0.0..=1.0).speed(0.005).slider(ui, fuzz, 0.0..=1.0, false);
+        }
+        Material::Dielectric { refraction_index } => {
+            let help =
+                "How strongly glass bends light: 1 not at all, glass 1.5, diamond 2.4 (refraction_index)";
+            let number = Number::new(About::new("Index", help).disabled_if(unused), REFRACTION_INDEX_LIMITS);
+            number.speed(0.005).slider(ui, refraction_index, 0.4..=2.6, false);
+        }
+    }
+    let speed = (document.camera.look_from.distance(body.center) * 0.003).max(1e-6);
+    let about = About::new("Centre", "The middle of the sphere");
+    vector(ui, about, &mut body.center, POSITIONS, speed);
+    let help = "Half its width; dragging the dot on its outline changes it too";
+    Number::new(About::new("Radius", help), RADIUS_LIMITS).row(ui, &mut body.radius);
+    body
+}
+
+fn albedo_words() -> About<'static> {
+    About::new("Colour", "The share of red, green and blue light that it gives back (albedo)")
+}
+
+/// The kinds of material. Another kind keeps the colour.
+fn kind(ui: &mut Ui, material: Material, disabled_reason: Option<&str>) -> Material {
+    let albedo = material.albedo().unwrap_or(DVec3::splat(0.8));
+    let help = "Matte scatters light everywhere, metal mirrors it, glass lets it through";
+    let options = [
+        ("Matte", Material::Lambertian { albedo }),
+        ("Metal", Material::Metal { albedo, fuzz: 0.0 }),
+        ("Glass", Material::Dielectric { refraction_index: 1.5 }),
+    ]
+    .map(|(name, other)| {
+        let is_it = other.kind() == material.kind();
+        (if is_it { material } else { other }, About::new(name, help).disabled_if(disabled_reason))
+    });
+    let width = (ui.available_width() / 3.0).floor();
+    switch(ui, width, material, &options).unwrap_or(material)
+}
+
+fn size_and_samples(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx: &PanelContext) {
+    let (origin, size) = (Arc::clone(&document.origin), document.size());
+    let is_own = document.has_own_size;
+    let is_resized = is_own != origin.keeps_size() || (is_own && size != origin.size());
+    let is_changed = is_resized || document.stop != origin.usual_stop();
+    let summary = format!("{} × {}", size[0], size[1]);
+    let reset = is_changed.then_some("Reset size and samples");
+    let header = Header { title: "Size and samples", summary: &summary, reset, ..Header::default() };
+    let is_reset = fold(ui, header, document.no_rays().is_some(), |ui| {
+        sizing(ui, document, remembered, cx);
+        let usual = origin.recipe.samples_per_pixel;
+        stop(ui, &mut document.stop, document.settings.estimate_error, usual);
+    });
+    if is_reset {
+        (document.has_own_size, document.stop) = (origin.keeps_size(), origin.usual_stop());
+        if document.has_own_size {
+            document.set_size(origin.size());
+        }
+    }
+}
+
+fn sizing(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx: &PanelContext) {
+    let names = [
+        ("Fill the window", Some(Sizing::Viewport)),
+        ("As in the book", Some(Sizing::Book)),
+        ("Other", None),
+    ];
+    let chosen = (!document.has_own_size).then_some(remembered.sizing);
+    let shown = names.iter().find(|(_, sizing)| *sizing == chosen).map_or("", |(name, _)| name);
+    ui.spacing_mut().combo_width = 136.0;
+    list(ui, About::new("Size", "How many pixels are rendered"), shown, |ui| {
+        for (name, sizing) in names {
+            if entry(ui, sizing == chosen, About::new(name, "")) {
+                match sizing {
+                    Some(sizing) => {
+                        remembered.sizing = sizing;
+                        cx.send(Command::RenderAtSize);
+                    }
+                    None => document.has_own_size = true,
+                }
+            }
+        }
+    });
+    let mut size = document.size();
+    for (name, pixels) in ["Width", "Height"].into_iter().zip(&mut size) {
+        whole(ui, About::new(name, "Pixels"), pixels, 1..=SIZE_LIMIT, 64.0);
+    }
+    if size != document.size() {
+        document.give_size(size);
+    }
+}
+
+/// A row for a whole number.
+fn whole(ui: &mut Ui, about: About<'_>, value: &mut u32, limits: RangeInclusive<u32>, width: f32) {
+    let limits = f64::from(*limits.start())..=f64::from(*limits.end());
+    row(ui, about, |ui| Number::new(about, limits).whole_field(ui, width, value));
+}
+
+/// What ends the render. A choice replaces what the command line has set.
+fn stop(ui: &mut Ui, stop: &mut Stop, has_error: bool, usual: u64) {
+    let no_error = (!has_error).then_some("Switch on \u{201c}Estimate the error\u{201d} under Tracer first");
+    let choices = [
+        ("Error", Stop { noise: Some(Stop::NOISE), ..Stop::default() }, no_error),
+        ("Samples", Stop::at_samples(usual), None),
+        ("Time", Stop { seconds: Some(60.0), ..Stop::default() }, None),
+        ("Never", Stop::default(), None),
+    ];
+    let chosen = match stop {
+        Stop { noise: Some(_), .. } => 0,
+        Stop { samples: Some(_), .. } => 1,
+        Stop { seconds: Some(_), .. } => 2,
+        _ => 3,
+    };
+    list(ui, About::new("Stop at", "When the render is done"), choices[chosen].0, |ui| {
+        for (index, (name, other, reason)) in choices.into_iter().enumerate() {
+            if entry(ui, index == chosen, About::new(name, "").disabled_if(reason)) && index != chosen {
+                *stop = other;
+            }
+        }
+    });
+    if let Some(noise) = &mut stop.noise {
+        let help = "How far pixels may still be from the finished picture, in per cent of white";
+        let mut percent = 100.0 * *noise;
+        let number = Number::new(About::new("Error", help).disabled_if(no_error), 1e-4..=100.0);
+        if number.unit(" %").speed(0.005).row(ui, &mut percent).changed() {
+            *noise = percent / 100.0;
+        }
+    }
+    if let Some(samples) = &mut stop.samples {
+        let help = "A sample is one random path through a pixel; a pixel is the mean of its samples";
+        let mut count = *samples as f64;
+        Number::new(About::new("Samples per pixel", help), 1.0..=SAMPLE_LIMIT as f64)
+            .whole()
+            .row(ui, &mut count);
+        *samples = count as u64;
+    }
+    if let Some(seconds) = &mut stop.seconds {
+        let about = About::new("Time", "Seconds of tracing, without pauses");
+        Number::new(about, 0.1..=1e6).unit(" s").speed(0.5).row(ui, seconds);
+    }
+}
+
+fn tracer(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered) {
+    let RenderSettings { width, height, .. } = document.settings;
+    let original = RenderSettings { width, height, ..document.origin.recipe.settings };
+    let is_changed = document.settings != original;
+    let reset = is_changed.then_some("Reset tracer");
+    let header = Header { title: "Tracer", reset, ..Header::default() };
+    let (rules, is_random) = (*document.rules(), document.is_random());
+    let is_reset = fold(ui, header, false, |ui| {
+        let settings = &mut document.settings;
+        if rules.shading == Shading::Path {
+            let help = "A path that has not ended by then brings back no light (max_depth)";
+            whole(
+                ui,
+                About::new("Rays per path, at most", help),
+                &mut settings.max_depth,
+                1..=DEPTH_LIMIT,
+                48.0,
+            );
+        }
+        random_numbers(ui, settings, (!is_random).then_some("In this stage nothing is random"));
+        threads_and_lanes(ui, remembered);
+        let help = "Keeps two halves of the samples, whose difference tells the error; costs memory";
+        check(ui, About::new("Estimate the error", help), &mut settings.estimate_error);
+        let help = "Traces with 16 digits (f64) instead of 7 (f32), one ray at a time: slow, but it shows rounding errors";
+        let mut is_reference = remembered.device == Device::Reference;
+        if check(ui, About::new("Reference (f64)", help), &mut is_reference).changed() {
+            remembered.device = if is_reference { Device::Reference } else { Device::Cpu };
+        }
+    });
+    if is_reset {
+        document.settings = original;
+    }
+}
+
+fn random_numbers(ui: &mut Ui, settings: &mut RenderSettings, disabled_reason: Option<&str>) {
+    let about = |name, help| About::new(name, help).disabled_if(disabled_reason);
+    ui.scope(|ui| {
+        above(ui, about("Random numbers", ""));
+        let even = "Even ones (Sobol) spread over the pixel and need fewer samples";
+        let options = [
+            (SamplerKind::Sobol, about("Even (Sobol)", even)),
+            (SamplerKind::Independent, about("Independent", "Independent ones are those of the book")),
+        ];
+        let width = (ui.available_width() / 2.0).floor();
+        settings.sampler = switch(ui, width, settings.sampler, &options).unwrap_or(settings.sampler);
+    });
+    let help = "Another seed gives the same picture with other noise";
+    whole(ui, about("Seed", help), &mut settings.seed, 0..=u32::MAX, 112.0);
+}
+
+fn threads_and_lanes(ui: &mut Ui, remembered: &mut Remembered) {
+    let not_cpu =
+        (remembered.device == Device::Gpu).then_some("The graphics card has its own threads and lanes");
+    let scalar = (remembered.device == Device::Reference).then_some("The reference traces one ray at a time");
+    let help = "How many threads of the processor trace; automatic leaves one to the window";
+    count(
+        ui,
+        About::new("Threads", help).disabled_if(not_cpu),
+        &mut remembered.threads,
+        (1..=core_count()).collect(),
+    );
+    let help = "A lane is a place in a processor core; 16 lanes trace 16 paths side by side";
+    count(
+        ui,
+        About::new("Lanes", help).disabled_if(not_cpu.or(scalar)),
+        &mut remembered.lanes,
+        lane_counts(),
+    );
+}
+
+/// A list of counts, the first of which is automatic.
+fn count(ui: &mut Ui, about: About<'_>, chosen: &mut Option<usize>, counts: Vec<usize>) {
+    let words =
+        |count: Option<usize>| count.map_or_else(|| "automatic".to_owned(), |count| count.to_string());
+    list(ui, about, &words(*chosen), |ui| {
+        for count in [None].into_iter().chain(counts.into_iter().map(Some)) {
+            if entry(ui, *chosen == count, About::new(&words(count), "")) {
+                *chosen = count;
+            }
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,10 @@
+//! The panels around the picture.
+
+pub mod bar;
+pub mod controls;
+pub mod first_steps;
+pub mod plot;
+pub mod present;
+pub mod right;
+pub mod stage_panel;
+pub mod status;

@@ -1,0 +1,286 @@
+//! The plot of error against tracing seconds, on logarithmic axes: a curve for each backend since the last restart, the
+//! expected continuation, and the goal; and when a render will reach its goal.
+
+use crate::app::commands::Snapshot;
+use crate::app::toolkit::theme;
+use crate::app::toolkit::widgets::{compact, hint, tip};
+use crate::numbers::statistics::fit::{Point, Prediction, predict};
+use crate::progressive::{HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, Status};
+use eframe::egui::{self, Rangef, Sense, Sides, Ui, Vec2b};
+use egui_plot::{
+    AxisHints, HLine, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints, Points, uniform_grid_spacer,
+};
+
+/// Predictions more than this many seconds ahead are not shown.
+const FARTHEST: f64 = 1e6;
+
+/// Draws the plot.
+pub fn ui(ui: &mut Ui, snapshot: &Snapshot) {
+    let status = &snapshot.status;
+    if points(status).is_empty() {
+        hint(
+            ui,
+            match snapshot.document().settings.estimate_error {
+                true => "The error is known after four samples per pixel.",
+                false => "Switch on \u{201c}Estimate the error\u{201d} under Tracer.",
+            },
+        );
+        return;
+    }
+    Sides::new().shrink_left().wrap().show(
+        ui,
+        |ui| ui.label("How far the picture still is from the finished one. Four times the samples halve it."),
+        |ui| {
+            let copy = ui.button("Copy");
+            if tip(ui, copy, "Copies the points of the curves as a table (CSV)", None).clicked() {
+                ui.ctx().copy_text(csv(&status.history));
+            }
+        },
+    );
+    plot(ui, snapshot.document().stop.noise, status);
+}
+
+fn plot(ui: &mut Ui, goal: Option<f64>, status: &Status) {
+    let &theme::Colours { first: of_cpu, second: of_gpu, third: expected, fourth: of_both, .. } =
+        theme::colours(ui);
+    let (weak, strong) = (ui.visuals().weak_text_color(), ui.visuals().strong_text_color());
+    let style = |backend: &str| match backend {
+        "cpu" => (of_cpu, "CPU"),
+        "gpu" => (of_gpu, "GPU"),
+        "cpu,gpu" => (of_both, "both"),
+        _ => (strong, "reference"),
+    };
+    let curves = curves(&status.history);
+    let now = points(status).last().map(at);
+    // From the newest error to the goal.
+    let ahead = prediction(status, goal).zip(now).zip(goal).map(|((ahead, [x, y]), goal)| {
+        let seconds = 10_f64.powf(x) + ahead.time.min(FARTHEST);
+        vec![[x, y], at(&Point { time: seconds, error: goal })]
+    });
+    let axis = |hints: AxisHints<'static>, name: &str| {
+        hints.label(egui::RichText::new(name).small()).formatter(|mark, _| power(mark.value))
+    };
+    let plot = Plot::new("error")
+        .legend(Legend::default())
+        .allow_drag(false)
+        .allow_zoom(Vec2b::FALSE)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .show_background(false)
+        .sense(Sense::hover())
+        .set_margin_fraction(egui::vec2(0.03, 0.12))
+        .custom_x_axes(vec![axis(AxisHints::new_x(), "seconds")])
+        .custom_y_axes(vec![
+            axis(AxisHints::new_y(), "error, % of white").label_spacing(Rangef { min: 8.0, max: 14.0 }),
+        ])
+        .x_grid_spacer(uniform_grid_spacer(|_| [1.0, 1.0, 1.0]))
+        .y_grid_spacer(uniform_grid_spacer(|_| [1.0, 1.0, 1.0]))
+        .grid_color(theme::colours(ui).line)
+        .label_formatter(|hover| {
+            let (HoverPosition::NearDataPoint { position: place, .. }
+            | HoverPosition::Elsewhere { position: place }) = hover;
+            let place = [place.x, place.y];
+            let point = status.history.iter().find(|point| of_history(point) == place);
+            let samples = point
+                .map_or_else(String::new, |point| format!("{} samples per pixel\n", point.samples_per_pixel));
+            let [seconds, error] = place.map(|power| compact(10_f64.powf(power)));
+            Some(format!("{samples}{seconds} s\nerror {error} %"))
+        });
+    plot.show(ui, |plot| {
+        if let Some(goal) = goal {
+            let name = format!("goal {} %", compact(two_digits(100.0 * goal)));
+            let line = HLine::new(name, (100.0 * goal).log10()).color(weak);
+            plot.hline(line.style(LineStyle::dashed_loose()).allow_hover(false));
+        }
+        if let Some(ahead) = ahead {
+            let line = Line::new("expected", PlotPoints::from(ahead)).color(expected);
+            plot.line(line.style(LineStyle::dashed_dense()).width(1.5).allow_hover(false));
+        }
+        for (place, (backend, points)) in curves.iter().enumerate() {
+            // The newest estimate follows after the last point.
+            let newest = now.filter(|_| place + 1 == curves.len());
+            let line = points.iter().copied().chain(newest).collect::<Vec<_>>();
+            let (colour, name) = style(backend);
+            plot.line(Line::new(name, line).color(colour).width(1.5));
+            plot.points(Points::new(name, points.clone()).color(colour).radius(2.5));
+        }
+    });
+}
+
+/// Rounds to two significant digits.
+fn two_digits(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
+}
+
+/// Splits the history into one curve for each backend; a curve begins where the previous one ends.
+fn curves(history: &[HistoryPoint]) -> Vec<(&'static str, Vec<[f64; 2]>)> {
+    let mut curves: Vec<(&'static str, Vec<[f64; 2]>)> = Vec::new();
+    for point in history.iter().filter(|point| point.rmse_estimate > 0.0 && point.trace_seconds > 0.0) {
+        let at = of_history(point);
+        match curves.last_mut() {
+            Some((name, points)) if *name == point.backend => points.push(at),
+            last => {
+                let from = last.and_then(|(_, points)| points.last().copied());
+                curves.push((point.backend, from.into_iter().chain([at]).collect()));
+            }
+        }
+    }
+    curves
+}
+
+fn of_history(point: &HistoryPoint) -> [f64; 2] {
+    at(&Point { time: point.trace_seconds, error: point.rmse_estimate })
+}
+
+/// Where a point lies in the plot: the logarithms of seconds and of per cent.
+fn at(point: &Point) -> [f64; 2] {
+    [point.time.log10(), (100.0 * point.error).log10()]
+}
+
+/// The points as CSV with a header line.
+fn csv(history: &[HistoryPoint]) -> String {
+    let line = |point: &HistoryPoint| {
+        let HistoryPoint { backend, samples_per_pixel, trace_seconds, rmse_estimate, rel_mse_estimate } =
+            point;
+        format!("{backend},{samples_per_pixel},{trace_seconds},{rmse_estimate},{rel_mse_estimate}\n")
+    };
+    let header = "backend,samples_per_pixel,trace_seconds,rmse_estimate,rel_mse_estimate\n";
+    history.iter().map(line).fold(header.to_owned(), |text, line| text + &line)
+}
+
+/// A label of a logarithmic axis.
+fn power(exponent: f64) -> String {
+    let decade = 10_f64.powf(exponent.floor());
+    compact((10_f64.powf(exponent) / decade).round() * decade)
+}
+
+/// All error estimates, the newest last.
+fn points(status: &Status) -> Vec<Point> {
+    let history = status.history.iter().map(|p| Point { time: p.trace_seconds, error: p.rmse_estimate });
+    let now = status.error.map(|error| Point { time: status.trace.as_secs_f64(), error: error.rmse });
+    history.chain(now).filter(|point| point.time > 0.0 && point.error > 0.0).collect()
+}
+
+/// Predicts in how many seconds the error will reach the target. `None` if it already has, or with too little data.
+pub fn prediction(status: &Status, target: Option<f64>) -> Option<Prediction> {
+    if status.samples_per_pixel < NOISE_TARGET_FIRST_SAMPLES || status.phase.is_over() {
+        return None;
+    }
+    let error = status.error?;
+    // Switching the backend bends the curve, so only the current backend's points are used.
+    let backend = status.history.last().map(|point| point.backend);
+    let mut history: Vec<Point> = status
+        .history
+        .iter()
+        .rev()
+        .take_while(|point| {
+            Some(point.backend) == backend && point.samples_per_pixel >= NOISE_TARGET_FIRST_SAMPLES
+        })
+        .map(|point| Point { time: point.trace_seconds, error: point.rmse_estimate })
+        .collect();
+    history.reverse();
+    let now = Point { time: status.trace.as_secs_f64(), error: error.rmse };
+    let from_now = |time: f64| (time - now.time).max(0.0);
+    predict(&history, now, target?)
+        .map(|found| Prediction { time: from_now(found.time), range: found.range.map(from_now) })
+        .filter(|found| found.time < FARTHEST)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::ErrorEstimate;
+    use crate::progressive::Phase;
+    use std::time::Duration;
+
+    fn point(backend: &'static str, samples: u64, trace_seconds: f64) -> HistoryPoint {
+        let rmse_estimate = 0.1 / (samples as f64).sqrt();
+        HistoryPoint {
+            backend,
+            samples_per_pixel: samples,
+            trace_seconds,
+            rmse_estimate,
+            rel_mse_estimate: 0.1,
+        }
+    }
+
+    #[test]
+    fn each_backend_has_a_curve_that_joins_the_one_before() {
+        let exact = HistoryPoint { rmse_estimate: 0.0, ..point("cpu", 4, 3.0) };
+        let history = [point("cpu", 2, 1.0), point("cpu", 4, 2.0), exact, point("gpu", 8, 2.1)];
+        let found = curves(&history);
+        let names: Vec<_> = found.iter().map(|(name, points)| (*name, points.len())).collect();
+        assert_eq!(names, [("cpu", 2), ("gpu", 2)]);
+        assert_eq!(found[0].1[1], found[1].1[0]);
+        let text = "backend,samples_per_pixel,trace_seconds,rmse_estimate,rel_mse_estimate\n\
+                    cpu,2,1,0.07071067811865475,0.1\n";
+        assert_eq!(csv(&history[..1]), text);
+    }
+
+    #[test]
+    fn the_prediction_counts_from_now_and_tells_its_range() {
+        let mut status = Status {
+            samples_per_pixel: 100,
+            phase: Phase::Tracing,
+            trace: Duration::from_secs(10),
+            error: Some(ErrorEstimate { rmse: 0.004, rmse_deviation: 0.0, rel_mse: 0.0 }),
+            ..Status::default()
+        };
+        let found = prediction(&status, Some(0.002)).unwrap();
+        assert!((found.time - 30.0).abs() < 1e-6, "{found:?}");
+        let now = Point { time: 10.0, error: 0.004 };
+        let [low, high] = predict(&[], now, 0.002).unwrap().range;
+        assert_eq!(found.range, [low - 10.0, high - 10.0]);
+        assert!(found.range[0] < 30.0 && found.range[1] > 30.0, "{found:?}");
+        assert_eq!(prediction(&status, Some(0.01)), None);
+        assert_eq!(prediction(&status, None), None);
+        for (samples, is_predicted) in
+            [(NOISE_TARGET_FIRST_SAMPLES - 1, false), (NOISE_TARGET_FIRST_SAMPLES, true)]
+        {
+            status.samples_per_pixel = samples;
+            assert_eq!(prediction(&status, Some(0.002)).is_some(), is_predicted, "{samples}");
+        }
+    }
+
+    fn at(
+        backend: &'static str,
+        samples_per_pixel: u64,
+        trace_seconds: f64,
+        rmse_estimate: f64,
+    ) -> HistoryPoint {
+        HistoryPoint { backend, samples_per_pixel, trace_seconds, rmse_estimate, rel_mse_estimate: 0.0 }
+    }
+
+    fn tracing(history: Vec<HistoryPoint>, seconds: f64, rmse: f64) -> Status {
+        Status {
+            samples_per_pixel: 1000,
+            phase: Phase::Tracing,
+            trace: Duration::from_secs_f64(seconds),
+            error: Some(ErrorEstimate { rmse, rmse_deviation: 0.0, rel_mse: 0.0 }),
+            history,
+            ..Status::default()
+        }
+    }
+
+    #[test]
+    fn only_the_clear_estimates_of_the_present_backend_count() {
+        let now = Point { time: 16.0, error: 0.02 };
+        let few = vec![at("gpu", 16, 4.0, 0.05), at("gpu", 200, 12.0, 0.027)];
+        let many = [few.clone(), vec![at("gpu", 400, 13.0, 0.026), at("gpu", 800, 14.0, 0.021)]].concat();
+        for counted in [few, many] {
+            let before = vec![at("gpu", 64, 1.0, 0.9), at("cpu", 128, 2.0, 0.8), at("gpu", 15, 3.0, 0.7)];
+            let points: Vec<Point> =
+                counted.iter().map(|p| Point { time: p.trace_seconds, error: p.rmse_estimate }).collect();
+            let expected = predict(&points, now, 0.01).unwrap();
+            let found = prediction(&tracing([before, counted].concat(), now.time, now.error), Some(0.01));
+            let from_now = |time: f64| time - now.time;
+            let (time, range) = (from_now(expected.time), expected.range.map(from_now));
+            assert_eq!(found, Some(Prediction { time, range }));
+        }
+        let status = tracing(Vec::new(), now.time, now.error);
+        assert!(prediction(&status, Some(0.01)).is_some());
+        let over = Status { phase: Phase::Failed("the device is gone".to_owned()), ..status.clone() };
+        assert_eq!(prediction(&over, Some(0.01)), None);
+        assert_eq!(prediction(&Status { error: None, ..status }, Some(0.01)), None);
+    }
+}

@@ -1,0 +1,116 @@
+//! The text about the stage: what it adds, what to look for, and what to compare it with.
+
+use crate::app::commands::{Command, PanelContext};
+use crate::app::model::{Document, With, partner};
+use crate::app::toolkit::widgets::{
+    add_command, choice, command_button, command_switch, hint, primary, small,
+};
+use crate::measure::stress::Case;
+use crate::stages::Stage;
+use eframe::egui::{Label, Link, RichText, Ui};
+
+pub fn ui(ui: &mut Ui, cx: &PanelContext) {
+    let document = cx.document();
+    match (document.stage(), document.case()) {
+        (Some(stage), _) => stage_ui(ui, stage, cx),
+        (None, Some(case)) => case_ui(ui, case, cx),
+        (None, None) => recipe_ui(ui, document),
+    }
+    compare_ui(ui, cx);
+    // At the end, so that it moves nothing.
+    if document.has_changed_scene() || document.camera != document.origin.recipe.camera {
+        ui.add_space(8.0);
+        let what = if document.stage().is_some() { "stage" } else { "picture" };
+        hint(ui, &format!("You changed this {what}."));
+        command_button(ui, cx, Command::ResetAll, "Reset all");
+    }
+}
+
+/// A title, with what it belongs to above.
+pub fn title(ui: &mut Ui, over: &str, title: &str) {
+    small(ui, over);
+    ui.add_space(-4.0);
+    ui.add(Label::new(RichText::new(title).heading().strong()).wrap());
+}
+
+/// A paragraph under a small heading.
+pub fn paragraph(ui: &mut Ui, heading: &str, text: &str) {
+    ui.add_space(4.0);
+    small(ui, heading);
+    ui.add_space(-4.0);
+    ui.add(Label::new(RichText::new(text).line_height(Some(20.0))).wrap());
+}
+
+fn stage_ui(ui: &mut Ui, stage: &Stage, cx: &PanelContext) {
+    title(ui, &format!("{} {}", stage.chapter(), stage.chapter_title()), stage.title);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 16.0;
+        let book = format!("{} in the book", stage.section);
+        for (name, command) in [(book.as_str(), Command::Book), ("Companion", Command::Companion)] {
+            add_command(ui, cx, command, Link::new(name));
+        }
+    });
+    for (heading, text) in
+        [("What is new", stage.what_is_new), ("Why", stage.why), ("Look for", stage.look_for)]
+    {
+        paragraph(ui, heading, text);
+    }
+    show_me(ui, stage, cx);
+}
+
+/// A button that shows what to look for, and then says what is seen.
+fn show_me(ui: &mut Ui, stage: &Stage, cx: &PanelContext) {
+    let is_off = cx.disabled_reason(Command::ShowMe).is_some();
+    ui.add_space(4.0);
+    // The card of the first steps has the one button to press next.
+    if cx.has_sight || cx.model.has_first_steps || is_off {
+        let label = if cx.has_sight { "Return" } else { "Show me" };
+        command_button(ui, cx, Command::ShowMe, label);
+    } else {
+        add_command(ui, cx, Command::ShowMe, primary("Show me"));
+    }
+    if cx.has_sight {
+        let text = RichText::new(stage.sight.caption).strong().line_height(Some(20.0));
+        ui.add(Label::new(text).wrap());
+    }
+}
+
+/// The picture to compare with and how, if there is one that teaches something.
+fn compare_ui(ui: &mut Ui, cx: &PanelContext) {
+    let is_book = cx.model.view.with() == With::Book;
+    let other = match cx.document().stage().and_then(partner) {
+        _ if is_book => "The book\u{2019}s arithmetic".to_owned(),
+        Some(other) => format!("{} {}", other.section, other.title),
+        None => return,
+    };
+    ui.add_space(4.0);
+    small(ui, "Compare with");
+    ui.add_space(-4.0);
+    ui.add(Label::new(other).wrap());
+    let wipe = if is_book { Command::BookArithmetic } else { Command::Wipe };
+    command_switch(ui, cx, 0.0, &[("Wipe", wipe), ("Difference", Command::Difference)]);
+}
+
+/// Text about a scene that is not a stage.
+fn recipe_ui(ui: &mut Ui, document: &Document) {
+    let scene = document.scene();
+    let (spheres, materials) = (scene.spheres.len(), scene.materials.len());
+    title(ui, &format!("{spheres} spheres, {materials} materials"), &document.origin.recipe.name);
+}
+
+/// Text about an extreme scene: what makes it difficult and what to watch.
+fn case_ui(ui: &mut Ui, case: &Case, cx: &PanelContext) {
+    title(ui, case.family.title, case.title());
+    let watch = case.watch.map_or("", |watch| watch.look_for);
+    for (heading, text) in [
+        ("Watch", watch),
+        ("What is difficult", case.stiff.as_str()),
+        ("What it teaches", case.family.lesson.unwrap_or_default()),
+    ] {
+        paragraph(ui, heading, text);
+    }
+    ui.add_space(4.0);
+    let command = Command::BookArithmetic;
+    let button = choice(ui, cx.is_on(command), command.name());
+    add_command(ui, cx, command, button);
+}

@@ -1,0 +1,309 @@
+//! The bar at the bottom: one sentence about the render, a line for its progress, and details on request.
+
+use super::plot::prediction;
+use crate::app::commands::{Command, PanelContext, Snapshot};
+use crate::app::model::spheres;
+use crate::app::toolkit::theme;
+use crate::app::toolkit::widgets::{command_button, compact, small, tip};
+use crate::denoise::DenoisedError;
+use crate::film::Film;
+use crate::job::render::BackendInfo;
+use crate::measure::grouped;
+use crate::progressive::{EndReason, Phase, Status};
+use eframe::egui::{
+    self, Align, Button, Id, Label, Layout, Margin, PopupCloseBehavior, RectAlign, Response, RichText, Sides,
+    Stroke, Ui, accesskit::Live,
+};
+
+const HEIGHT: f32 = 32.0;
+
+/// Assistive technology reads the sentence at most once in so many seconds.
+const READ_SECONDS: f64 = 5.0;
+
+const ERROR_HELP: &str = "How far a pixel usually is from the finished picture, in per cent of white; estimated from \
+                          the two halves of the samples";
+
+const TERMS: &str = "A path is one random way of light, followed back from the camera ray by ray. A lane is one of the \
+                     places in a processor core that trace paths side by side. Error is the usual distance from the \
+                     finished picture, in per cent of white.";
+
+/// Draws the bar. `offered` is the size at which a scaled picture can be rendered.
+pub fn ui(ui: &mut Ui, cx: &PanelContext, offered: Option<[u32; 2]>) {
+    let panel =
+        egui::Panel::bottom("status").exact_size(HEIGHT).frame(theme::panel(Margin::symmetric(16, 4)));
+    let shown = panel.show(ui, |ui| {
+        let sides = Sides::new().height(ui.available_height()).shrink_left().truncate();
+        sides.show(ui, |ui| sentence_ui(ui, cx, offered), |ui| details(ui, cx));
+    });
+    if let Some(share) = share(cx) {
+        let rect = shown.response.rect;
+        let colours = theme::colours(ui);
+        let color = if cx.model.is_paused { colours.weak } else { colours.accent };
+        let end = rect.left() + rect.width() * share as f32;
+        ui.painter().hline(rect.left()..=end, rect.top() + 1.0, Stroke::new(2.0, color));
+    }
+}
+
+/// The sentence, and what the user can do about the picture.
+fn sentence_ui(ui: &mut Ui, cx: &PanelContext, offered: Option<[u32; 2]>) {
+    let sentence = sentence(cx);
+    let is_fault = cx.invalid.is_some() || matches!(cx.status.phase, Phase::Failed(_));
+    let color = if is_fault { theme::colours(ui).bad } else { ui.visuals().text_color() };
+    let response = ui.label(RichText::new(&sentence).color(color));
+    announce(&response, &sentence);
+    let doubt = cx.status.doubt.as_ref().map_or_else(String::new, |doubt| format!(". {doubt}"));
+    tip(ui, response, &format!("{ERROR_HELP}{doubt}"), None);
+    left_out(ui, cx.status.rejected_samples);
+    let is_inside = spheres::inside(cx.document()) && cx.document().case().is_none();
+    if is_inside || cx.is_lost {
+        ui.label(match is_inside {
+            true => "The camera is inside a sphere.",
+            false => "Nothing but sky or ground is in sight.",
+        });
+        command_button(ui, cx, Command::Home, "Home");
+    } else if let Some([width, height]) = offered {
+        ui.label("This picture is scaled.");
+        let name = format!("Render at {width} × {height}");
+        command_button(ui, cx, Command::RenderAtSize, &name);
+    }
+}
+
+/// Tells assistive technology the sentence, but not at each change.
+fn announce(response: &Response, sentence: &str) {
+    let (place, now) = (Id::unique("status announced"), response.ctx.input(|input| input.time));
+    let last: Option<(String, f64)> = response.ctx.data(|data| data.get_temp(place));
+    let told = match last {
+        Some((told, at)) if now < at + READ_SECONDS => told,
+        _ => {
+            response.ctx.data_mut(|data| data.insert_temp(place, (sentence.to_owned(), now)));
+            sentence.to_owned()
+        }
+    };
+    response.ctx.accesskit_node_builder(response.id, |node| {
+        node.set_value(told);
+        node.set_live(Live::Polite);
+    });
+}
+
+fn left_out(ui: &mut Ui, count: u64) {
+    if count > 0 {
+        let words = format!("{} samples were left out", grouped(count));
+        let response = ui.label(RichText::new(words).color(theme::colours(ui).warn));
+        tip(ui, response, "They were not numbers, so they would spoil their pixels", None);
+    }
+}
+
+/// What the tracer is doing.
+pub fn sentence(snapshot: &Snapshot) -> String {
+    let (status, stop) = (&*snapshot.status, snapshot.document().stop);
+    if let Some(reason) = &snapshot.invalid {
+        return format!("Not rendered: {reason}");
+    }
+    let view = &snapshot.model.view;
+    if let Some(kept) = view.looked().and_then(|place| view.kept.get(place)) {
+        let (title, samples) = (view.kept.title(kept), grouped(kept.samples()));
+        return format!("Kept {title}, {samples} samples per pixel. Escape returns to the picture");
+    }
+    if let Some(checked) = &snapshot.checked {
+        return checked.clone();
+    }
+    let count = status.samples_per_pixel;
+    let error = match (status.error, denoised_error(snapshot)) {
+        (Some(raw), Some(Ok(error))) => {
+            let [rmse, deviation, raw] = [error.rmse(), error.rmse_deviation(), raw.rmse].map(percent);
+            format!(", denoised: error {rmse} ± {deviation} (raw {raw})")
+        }
+        (Some(raw), Some(Err(reason))) => format!(", error {} (not denoised: {reason})", percent(raw.rmse)),
+        (Some(raw), None) => format!(", error {}", percent(raw.rmse)),
+        (None, _) => String::new(),
+    };
+    let samples = format!("{} samples per pixel", grouped(count));
+    match &status.phase {
+        Phase::Failed(reason) => format!("Stopped at {samples}: {reason}"),
+        _ if snapshot.is_coarse && snapshot.is_moving => "A coarse picture while you move".to_owned(),
+        _ if (snapshot.is_coarse || count == 0) && snapshot.has_picture => "Refining".to_owned(),
+        _ if snapshot.is_coarse || count == 0 => "Starting".to_owned(),
+        _ if snapshot.model.is_paused && snapshot.is_held => {
+            format!("Paused; the picture has moved, and {count} samples show it")
+        }
+        _ if snapshot.model.is_paused => format!("Paused at {samples}{error}"),
+        Phase::Done(_) if !snapshot.document().is_random() => {
+            "Done: nothing in this picture depends on chance".to_owned()
+        }
+        Phase::Done(reason) => {
+            let seconds = snapshot.seconds_before.unwrap_or_default() + status.trace.as_secs_f64();
+            let taken =
+                snapshot.seconds_before.map_or_else(String::new, |_| format!(" in {}", time(seconds)));
+            let word = if *reason == EndReason::Stopped { "Stopped" } else { "Done" };
+            format!("{word}: {samples}{taken}{error}")
+        }
+        _ => match stop.samples {
+            Some(end) => {
+                let per_sample = status.trace.as_secs_f64() / count as f64;
+                let left = time(per_sample * end.saturating_sub(count) as f64);
+                let samples = format!("{} of {} samples per pixel", grouped(count), grouped(end));
+                format!("{samples}{error}; done in about {left}")
+            }
+            None => format!("{samples}{error}{}", ending(snapshot)),
+        },
+    }
+}
+
+/// The error of the denoised picture of the traced film, or why there is none, if it is to be shown.
+fn denoised_error(snapshot: &Snapshot) -> Option<Result<DenoisedError, &str>> {
+    let view = &snapshot.model.view;
+    let (run, found) = view.denoised.as_ref().filter(|_| view.is_denoised)?;
+    let outcome = found.as_ref().map(|denoised| denoised.error).map_err(String::as_str);
+    (*run == snapshot.status.run && outcome != Err("")).then_some(outcome)
+}
+
+/// When a render without a number of samples will end.
+fn ending(snapshot: &Snapshot) -> String {
+    let (status, stop) = (&*snapshot.status, snapshot.document().stop);
+    if let Some((target, found)) = stop.noise.zip(prediction(status, stop.noise)) {
+        format!("; {} in about {}", percent(target), time(found.time))
+    } else if let Some(end) = stop.seconds {
+        format!("; done in {}", time(end - status.elapsed.as_secs_f64()))
+    } else {
+        String::new()
+    }
+}
+
+/// How much of the work is done, `0..=1`; none without an end.
+pub fn share(snapshot: &Snapshot) -> Option<f64> {
+    let (status, stop) = (&*snapshot.status, snapshot.document().stop);
+    if status.phase.is_over() || status.samples_per_pixel == 0 || snapshot.is_coarse {
+        return None;
+    }
+    let of_samples = stop.samples.map(|end| status.samples_per_pixel as f64 / end.max(1) as f64);
+    let of_time = stop.seconds.map(|end| status.elapsed.as_secs_f64() / end);
+    // The error falls with the root of the samples.
+    let of_error = stop.noise.zip(status.error).map(|(end, error)| (end / error.rmse).powi(2));
+    [of_samples, of_time, of_error].into_iter().flatten().reduce(f64::max).map(|share| share.clamp(0.0, 1.0))
+}
+
+fn details(ui: &mut Ui, snapshot: &Snapshot) {
+    let response = ui.add(Button::new("Details"));
+    egui::Popup::from_toggle_button_response(&response)
+        .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+        .align(RectAlign::TOP_END)
+        .gap(8.0)
+        .show(|ui| {
+            ui.set_width(304.0);
+            egui::Frame::new().inner_margin(12).show(ui, |ui| {
+                ui.label(RichText::new("Details").strong());
+                for (name, value) in figures(snapshot) {
+                    ui.horizontal(|ui| {
+                        small(ui, name);
+                        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                            ui.add(Label::new(RichText::new(value).small()).truncate());
+                        });
+                    });
+                }
+                small(ui, TERMS);
+            });
+        });
+    tip(ui, response, "Speed, lanes, memory, and what these mean", None);
+}
+
+fn figures(snapshot: &Snapshot) -> Vec<(&'static str, String)> {
+    let status = &*snapshot.status;
+    let unknown = || "–".to_owned();
+    let speed = status.paths_per_second() / 1e6;
+    // A film that was opened does not say how its samples were traced.
+    let has_paths = status.stats.paths > 0;
+    let rays = status.stats.rays as f64 / status.stats.paths.max(1) as f64;
+    let on_cpu = status.contributions.iter().rev().find(|part| part.backend.name.starts_with("cpu"));
+    let lanes = status.lane_occupancy().zip(on_cpu);
+    let lanes = lanes.map(|(share, part)| format!("{}, {:.0} % at work", part.backend.lanes, 100.0 * share));
+    let settings = snapshot.document().settings;
+    let bytes = Film::bytes(settings.width, settings.height, settings.half_count());
+    vec![
+        ("Speed", if has_paths { format!("{speed:.1} million paths per second") } else { unknown() }),
+        ("Rays per path", if has_paths { format!("{rays:.1} on average") } else { unknown() }),
+        ("Processor", processors(status).unwrap_or_else(unknown)),
+        ("Lanes", lanes.unwrap_or_else(unknown)),
+        ("Memory of this picture", format!("{:.1} MB", bytes as f64 / 1e6)),
+    ]
+}
+
+/// Which processors traced the picture, with the share of each if there are several.
+fn processors(status: &Status) -> Option<String> {
+    let total: u64 = status.contributions.iter().map(|part| part.samples_per_pixel).sum();
+    let parts = status.contributions.iter().map(|part| {
+        let share = 100.0 * part.samples_per_pixel as f64 / total.max(1) as f64;
+        let share = if status.contributions.len() > 1 { format!("{share:.0} %: ") } else { String::new() };
+        format!("{share}{}", processor(&part.backend))
+    });
+    parts.reduce(|all, part| format!("{all}\n{part}")).or_else(|| status.backend.as_ref().map(processor))
+}
+
+fn processor(BackendInfo { name, device, threads, .. }: &BackendInfo) -> String {
+    // Without the adapter's driver.
+    let device = device.split(" (").next().unwrap_or_default();
+    match *name {
+        "gpu" => format!("GPU, {device}"),
+        "cpu" => format!("CPU, {threads} threads, {device}"),
+        name => format!("{name}, {threads} threads, {device}"),
+    }
+}
+
+/// An error in per cent of white, with two digits below one.
+fn percent(error: f64) -> String {
+    let percent = 100.0 * error;
+    let places = if percent > 0.0 { (-percent.log10()).ceil().clamp(1.0, 6.0) as usize } else { 0 };
+    format!("{} %", compact(format!("{percent:.places$}").parse().unwrap_or(percent)))
+}
+
+/// Seconds in words.
+pub fn time(seconds: f64) -> String {
+    let whole = seconds.max(0.0).round() as u64;
+    match whole {
+        0 if seconds > 0.0 => "1 s".to_owned(),
+        0..60 => format!("{whole} s"),
+        60..3600 => format!("{} min {} s", whole / 60, whole % 60),
+        3600..86_400 => format!("{} h {} min", whole / 3600, whole % 3600 / 60),
+        _ => "more than a day".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::tests::snapshot_of;
+    use crate::film::ErrorEstimate;
+    use std::sync::Arc;
+    use std::time::Duration;
+
+    #[test]
+    fn the_sentence_tells_how_far_the_render_is() {
+        let mut snapshot = snapshot_of("--stage metal --size 32x18");
+        let status = Status {
+            samples_per_pixel: 100,
+            phase: Phase::Tracing,
+            trace: Duration::from_secs(10),
+            error: Some(ErrorEstimate { rmse: 0.004, rmse_deviation: 0.0, rel_mse: 0.0 }),
+            ..Status::default()
+        };
+        snapshot.status = Arc::new(status.clone());
+        snapshot.model.document.stop.noise = Some(0.002);
+        assert!(sentence(&snapshot).ends_with("error 0.4 %; 0.2 % in about 30 s"), "{}", sentence(&snapshot));
+        assert_eq!(share(&snapshot), Some(0.25));
+        snapshot.is_coarse = true;
+        assert!(sentence(&snapshot) == "Starting" && share(&snapshot).is_none());
+        snapshot.is_moving = true;
+        assert_eq!(sentence(&snapshot), "A coarse picture while you move");
+        snapshot.is_coarse = false;
+        (snapshot.model.is_paused, snapshot.is_held) = (true, true);
+        assert_eq!(sentence(&snapshot), "Paused; the picture has moved, and 100 samples show it");
+        (snapshot.model.is_paused, snapshot.is_held) = (false, false);
+        snapshot.status = Arc::new(Status { phase: Phase::Done(EndReason::NoiseTarget), ..status });
+        assert!(
+            sentence(&snapshot).starts_with("Done: 100 samples per pixel in 10 s"),
+            "{}",
+            sentence(&snapshot)
+        );
+        assert_eq!(share(&snapshot), None);
+        assert_eq!([4.2, 72.0, 7500.0, 1e6].map(time), ["4 s", "1 min 12 s", "2 h 5 min", "more than a day"]);
+    }
+}

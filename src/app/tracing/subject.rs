@@ -1,0 +1,125 @@
+//! What is on the screen, the traced film or its denoised picture, which is made in the background when the film has twice
+//! the samples of the one before, and at the end of a render or a pause.
+
+use super::Tracing;
+use crate::app::model::{Document, Found, ViewState};
+use crate::app::toolkit::{Answers, Query};
+use crate::denoise::{Denoised, Halves, denoise};
+use crate::film::Film;
+use crate::progressive::Phase;
+use eframe::egui::Context;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Fewer samples per pixel are not worth denoising.
+const LEAST_SAMPLES: u64 = 4;
+
+/// Filtering may take one in so many parts of the time, because it takes processors from the tracer.
+const SHARE: u32 = 25;
+
+/// Tells pictures apart: the run of the render, and the samples of the denoised picture.
+pub type PictureId = (u64, Option<u64>);
+
+/// The traced film, or its denoised picture.
+#[derive(Clone, Copy)]
+pub struct Subject<'a> {
+    pub document: &'a Document,
+    pub tracing: &'a Tracing,
+    pub denoised: Option<&'a Arc<Denoised>>,
+}
+
+impl<'a> Subject<'a> {
+    pub fn new(view: &'a ViewState, document: &'a Document, tracing: &'a Tracing) -> Self {
+        Subject { document, tracing, denoised: view.denoised_of(tracing.main.status().run) }
+    }
+
+    pub fn id(&self) -> PictureId {
+        (self.tracing.main.status().run, self.denoised.map(|denoised| denoised.film.sample_count()))
+    }
+
+    /// Samples per pixel of the film.
+    pub fn samples(&self) -> u64 {
+        self.tracing.main.status().samples_per_pixel
+    }
+
+    /// Whether it is the film of its document at full size, and has samples.
+    pub fn has_samples(&self) -> bool {
+        self.tracing.main.has_samples(self.document)
+    }
+
+    /// Runs `look` with the film or its denoised picture on another thread.
+    pub fn inspect(&self, look: impl FnOnce(&Film) + Send + 'static) {
+        match self.denoised.map(Arc::clone) {
+            Some(denoised) => self.tracing.main.inspect(move |_| look(&denoised.film)),
+            None => self.tracing.main.inspect(look),
+        }
+    }
+
+    /// Asks `query` about `key`. `look` finds the answer, if any, in the film or its denoised picture.
+    pub fn ask<K: PartialEq, T: Send + 'static>(
+        &self,
+        context: &Context,
+        query: &mut Query<K, T>,
+        key: K,
+        look: impl FnOnce(&Film) -> Option<T> + Send + 'static,
+    ) {
+        if let Some(answer) = query.ask(context, key) {
+            self.inspect(move |film| look(film).into_iter().for_each(|found| answer.give(Ok(found))));
+        }
+    }
+}
+
+#[derive(Default)]
+pub struct Denoising {
+    /// With the time that it took.
+    answers: Answers<(Found, Duration)>,
+    /// The run whose film is being denoised, and how to stop that.
+    working: Option<(u64, Arc<AtomicBool>)>,
+    /// The run whose film was denoised last, and its samples.
+    last: Option<(u64, u64)>,
+    rest_until: Option<Instant>,
+}
+
+impl Denoising {
+    /// Asks for the film's denoised picture if it is time, and returns what was found since the last call.
+    pub fn follow(&mut self, context: &Context, subject: &Subject<'_>, is_on: bool) -> Option<Found> {
+        let status = subject.tracing.main.status();
+        let (run, samples) = (status.run, status.samples_per_pixel);
+        if let Some((_, stop)) = self.working.as_ref().filter(|(of, _)| !is_on || *of != run) {
+            stop.store(true, Ordering::Relaxed);
+        }
+        let mut found = None;
+        while let Some(outcome) = self.answers.take() {
+            let working = self.working.take();
+            if let Ok((_, took)) = outcome {
+                self.rest_until = Some(Instant::now() + took * SHARE);
+            }
+            found = match outcome {
+                Ok((answer, _)) => Some(answer),
+                Err(reason) => working.map(|(run, _)| (run, Err(reason))),
+            };
+        }
+        if !is_on {
+            self.last = None;
+        }
+        let known = self.last.filter(|(of, _)| *of == run).map_or(0, |(_, samples)| samples);
+        let is_still = status.phase.is_over() || status.phase == Phase::Paused;
+        let is_resting = known > 0 && self.rest_until.is_some_and(|until| Instant::now() < until);
+        let is_due = if is_still { samples > known } else { samples >= 2 * known && !is_resting };
+        if is_on && is_due && samples >= LEAST_SAMPLES && subject.has_samples() && self.working.is_none() {
+            let stop = Arc::new(AtomicBool::new(false));
+            (self.working, self.last) = (Some((run, Arc::clone(&stop))), Some((run, samples)));
+            let answer = self.answers.promise(context);
+            subject.tracing.main.inspect(move |film| {
+                let (begin, halves) = (Instant::now(), Halves::of(film));
+                answer.give_from("denoise", move || {
+                    let outcome = halves.map_err(|reason| reason.to_string());
+                    let outcome = outcome.and_then(|halves| denoise(halves, &stop).ok_or_else(String::new));
+                    Ok(((run, outcome.map(Arc::new)), begin.elapsed()))
+                });
+            });
+        }
+        found
+    }
+}

@@ -1,0 +1,62 @@
+//! How the picture is shown: the viewport, the layers and numbers over it, and the pictures that were kept.
+
+use super::Viewport;
+use super::pixel_values::PixelValues;
+use super::sight::Sighted;
+use crate::app::model::spheres::is_lost;
+use crate::app::model::{CheckedScene, Model, Show};
+use crate::app::toolkit::Toasts;
+use crate::app::tools::tone::ToneUi;
+use crate::app::tracing::Tracing;
+use crate::app::tracing::kept::KeptActions;
+use crate::app::tracing::layers::Layers;
+use crate::app::tracing::subject::{Denoising, Subject};
+use crate::scene::Camera;
+use eframe::egui::Context;
+use std::sync::Arc;
+
+#[derive(Default)]
+pub struct Display {
+    pub viewport: Viewport,
+    pub layers: Layers,
+    pub tone: ToneUi,
+    pub values: PixelValues,
+    pub denoising: Denoising,
+    pub kept: KeptActions,
+    /// Nothing but sky and ground is in sight, unlike from the camera of the stage.
+    pub is_lost: bool,
+    /// Camera and scene of which that was found.
+    judged: Option<(Camera, Arc<CheckedScene>)>,
+    /// What "Show me" has changed, to return to.
+    pub sight: Option<Sighted>,
+}
+
+impl Display {
+    /// Asks background threads for what the screen shows beside the picture.
+    pub fn follow(
+        &mut self,
+        context: &Context,
+        model: &Model,
+        tracing: &Tracing,
+        is_moving: bool,
+        toasts: &mut Toasts,
+    ) {
+        let (document, view) = (&model.document, &model.view);
+        let is_known = |(camera, scene): &(Camera, Arc<CheckedScene>)| {
+            *camera == document.camera && Arc::ptr_eq(scene, &document.checked)
+        };
+        if !is_moving && !self.judged.as_ref().is_some_and(is_known) {
+            self.judged = Some((document.camera, Arc::clone(&document.checked)));
+            self.is_lost = is_lost(document);
+        }
+        let subject = Subject::new(view, document, tracing);
+        let fault = self.layers.follow(context, view.show().layer(), document);
+        if let Some(reason) = fault {
+            toasts.bad(format!("This view cannot be traced: {reason}"));
+        }
+        self.tone.follow(&subject, view.tone.white(), context);
+        let is_picture = view.mode().is_none() && view.show() == Show::Picture;
+        let area = self.viewport.room.filter(|_| is_picture);
+        self.values.follow(&subject, self.viewport.placement.rect, area, context);
+    }
+}

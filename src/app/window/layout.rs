@@ -1,0 +1,177 @@
+//! Where everything is drawn in a frame: panels, the picture, what lies over it, and dialogs.
+
+use super::Window;
+use crate::app::commands::{PanelContext, Requests, Snapshot};
+use crate::app::model::{Model, Remembered, Tab};
+use crate::app::panels::{bar, controls, first_steps, present, right, stage_panel, status};
+use crate::app::toolkit::theme;
+use crate::app::tools::dock;
+use crate::app::tools::inspector::Inspector;
+use crate::app::tools::paths::at_same_place;
+use crate::app::tracing::second::Second;
+use crate::app::viewport::display::Display;
+use crate::app::viewport::{Pictures, Touch};
+use eframe::egui::{self, Ui};
+
+/// Windows narrower than this many points have no room for two panels beside the picture.
+pub(super) const NARROW: f32 = 1000.0;
+
+impl Window {
+    /// Draws everything. Each panel gets the state that it may change, the facts, and the list of commands to add to.
+    pub(super) fn layout(&mut self, ui: &mut Ui) {
+        let cx = PanelContext::new(self.snapshot());
+        bar::name_window(ui.ctx(), cx.document());
+        if cx.model.presentation.is_some() {
+            present::ui(ui, &cx);
+        }
+        if cx.model.has_panels() {
+            self.panels(ui, &cx);
+        }
+        let touch =
+            egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| self.middle(ui, &cx));
+        self.take_touch(ui, touch.inner, &cx);
+        let outcome = self.shell.dialogs.ui(ui, &cx);
+        self.end_dialog(&ui.ctx().clone(), outcome);
+        if cx.model.presentation.is_some_and(|presentation| presentation.is_blank) {
+            present::blank(ui.ctx());
+        }
+        let Requests { commands, edits } = cx.requests.into_inner();
+        edits.into_iter().for_each(|edit| self.edit(edit));
+        self.commands.extend(commands);
+    }
+
+    /// The panels around the picture.
+    fn panels(&mut self, ui: &mut Ui, cx: &PanelContext) {
+        let Window { model, tracing, display, tools, .. } = self;
+        let Model { document, view, remembered, .. } = model;
+        let has = &cx.model.remembered;
+        let (room, is_narrow) = (ui.available_width(), ui.available_width() < NARROW);
+        bar::ui(ui, cx);
+        status::ui(ui, cx, tracing.sizer.offer);
+        let mut tabs = Vec::new();
+        if has.has_info {
+            tabs.extend([Tab::Stage, Tab::Code]);
+            tabs.extend(tools.check.is_open().then_some(Tab::Check));
+        }
+        if has.has_controls && is_narrow {
+            tabs.push(Tab::Controls);
+        }
+        let wanted = tabs.iter().find(|tab| **tab == remembered.tab).or(tabs.first()).copied();
+        let mut controls = |ui: &mut Ui, remembered: &mut Remembered| {
+            controls::ui(ui, document, remembered, cx);
+        };
+        if has.has_controls && !is_narrow {
+            let panel = egui::Panel::left("controls").exact_size(232.0);
+            let panel = panel.frame(theme::panel(egui::Margin::ZERO));
+            panel.show(ui, |ui| right::scrolling(ui, |ui| controls(ui, remembered)));
+        }
+        if let Some(tab) = wanted {
+            right::panel(tab, room).show(ui, |ui| {
+                let chosen = right::tabs(ui, &tabs, tab);
+                if chosen != tab {
+                    remembered.tab = chosen;
+                }
+                match tab {
+                    Tab::Stage => {
+                        right::foot(ui, |ui| {
+                            display.tone.ui(ui, view, cx);
+                            numbers(ui, cx, display, &tracing.second, &tools.inspector);
+                        });
+                        right::scrolling(ui, |ui| stage_panel::ui(ui, cx));
+                    }
+                    Tab::Code => tools.code.ui(ui, cx),
+                    Tab::Check => tools.check.ui(ui, cx),
+                    Tab::Controls => right::scrolling(ui, |ui| controls(ui, remembered)),
+                }
+            });
+        }
+    }
+
+    /// The picture, with the dock and the card of first steps below.
+    fn middle(&mut self, ui: &mut Ui, cx: &PanelContext) -> Touch {
+        if cx.model.has_panels() {
+            let Window { model, tools, display, .. } = self;
+            dock::ui(ui, model, tools, &mut display.kept, cx);
+        }
+        if cx.model.has_panels() && cx.model.remembered.dock.is_none() {
+            first_steps::ui(ui, cx);
+        }
+        if cx.model.shows(Tab::Check)
+            && let Some(room) = self.tools.check.picture(ui)
+        {
+            self.display.viewport.room = Some(room);
+            return Touch::default();
+        }
+        if cx.model.presentation.is_some() {
+            let context = ui.ctx().clone();
+            present::enlarge(&context, ui.style_mut());
+        }
+        self.picture(ui, cx)
+    }
+
+    fn picture(&mut self, ui: &mut Ui, cx: &PanelContext) -> Touch {
+        let Window { model, tracing, display, tools, .. } = self;
+        let Model { document, view, selected, .. } = model;
+        let layer = view.show().layer();
+        let shown = tracing.main.shown();
+        let is_scaled = view.compared_kept().is_some_and(|kept| kept.size() != cx.document().size());
+        let pictures = Pictures {
+            main: match layer.and_then(|layer| display.layers.shown(layer)) {
+                Some(layer) => Some((&layer.texture, layer.divisor > 1)),
+                None => shown.map(|shown| (&shown.texture, shown.divisor > 1)),
+            },
+            titles: titles(cx, &tracing.second),
+            second: tracing.second.shown(view).map(|shown| (&shown.texture, shown.divisor > 1 || is_scaled)),
+            paths: &tools.paths,
+            values: &display.values,
+        };
+        let handles = (&mut document.camera, &mut view.divider, selected);
+        display.viewport.ui(ui, handles, pictures, cx)
+    }
+
+    /// Does what the pointer did in the picture.
+    fn take_touch(&mut self, ui: &Ui, touch: Touch, cx: &PanelContext) {
+        let room = self.display.viewport.room;
+        if cx.model.presentation.is_some()
+            && let (Some(room), Some(at)) = (room, ui.input(|input| input.pointer.hover_pos()))
+            && touch.hovered.is_some()
+        {
+            let Window { display, tracing, tools, .. } = self;
+            present::magnify(ui, room, at, |ui| {
+                numbers(ui, cx, display, &tracing.second, &tools.inspector);
+            });
+        }
+        self.tools.inspector.hover(touch.hovered);
+        if let Some(said) = touch.said {
+            self.shell.toasts.good(said);
+        }
+        if touch.is_move {
+            self.changes.note_move();
+        }
+        if let Some(room) = room {
+            self.shell.toasts.ui(ui, room, &mut self.commands);
+        }
+    }
+}
+
+/// The titles of the two sides of a comparison, the other one first.
+fn titles(snapshot: &Snapshot, second: &Second) -> [String; 2] {
+    let view = &snapshot.model.view;
+    let other = match view.compared_kept() {
+        Some(kept) => Some(view.kept.title(kept)),
+        None => second.shown(view).map(|shown| shown.document.title()),
+    };
+    [other.unwrap_or_default(), snapshot.document().title()]
+}
+
+/// The numbers of the pixel under the pointer.
+fn numbers(ui: &mut Ui, snapshot: &Snapshot, display: &Display, second: &Second, inspector: &Inspector) {
+    let view = &snapshot.model.view;
+    let at = inspector.pixel().map(|pixel| pixel.at);
+    let value = at.filter(|_| view.show().layer().is_some()).and_then(|at| display.layers.value_at(at));
+    let size = snapshot.document().size();
+    let other = at
+        .zip(second.means(view))
+        .and_then(|(at, means)| means.mean(at_same_place(at, [size, [means.width, means.height]])));
+    inspector.ui(ui, snapshot.document(), value, other);
+}

@@ -1,0 +1,346 @@
+//! The window: its parts, and the order of a frame. Only this file and `perform`, `receive` and `layout`, which extend it,
+//! know all parts.
+
+mod frame_log;
+mod input;
+mod layout;
+mod perform;
+mod receive;
+mod shell;
+
+use crate::app::commands::{Command, Snapshot};
+use crate::app::files::Files;
+use crate::app::files::autosave::{Autosave, picture_of};
+use crate::app::model::changes::Changes;
+use crate::app::model::{Device, DeviceOptions, Document, Model, Origin, Source, Stored, Tab, ViewState};
+use crate::app::toolkit::theme;
+use crate::app::tools::Tools;
+use crate::app::tracing::Tracing;
+use crate::app::tracing::subject::Subject;
+use crate::app::viewport::display::Display;
+use crate::cli::WindowOptions;
+use crate::job::recipe::Recipe;
+use anyhow::{Context as _, Result};
+use eframe::egui;
+use frame_log::FrameLog;
+use shell::Shell;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// The window of the program.
+#[doc(hidden)]
+pub struct Window {
+    /// What the user has chosen.
+    pub model: Model,
+    /// What can be undone.
+    pub changes: Changes,
+    pub tracing: Tracing,
+    pub display: Display,
+    pub tools: Tools,
+    pub files: Files,
+    pub autosave: Autosave,
+    pub shell: Shell,
+    /// Commands to run in this frame.
+    pub commands: Vec<Command>,
+}
+
+impl Window {
+    /// A window of these options, without a display.
+    ///
+    /// # Errors
+    /// If the render thread cannot be started, or the frame log cannot be written.
+    pub fn new(options: WindowOptions) -> Result<Self> {
+        Window::with(options, None)
+    }
+
+    /// A window of these options that begins where the last one ended.
+    ///
+    /// # Errors
+    /// Those of [`Window::new`].
+    pub fn with(options: WindowOptions, storage: Option<&dyn eframe::Storage>) -> Result<Self> {
+        let (mut remembered, view) = Stored::read(storage);
+        if options.is_device_given {
+            remembered.device = Device::of(&options.backend);
+        }
+        let has_first_steps = !options.is_picture_given && !remembered.is_greeted;
+        if let Some(file) = &options.file {
+            remembered.note_recent(file);
+        }
+        let mut autosave = Autosave::new(options.state_directory.as_deref(), options.autosave_every);
+        let last = autosave.last().filter(|_| !options.is_fresh && !options.is_picture_given);
+        let last = last.and_then(|path| Some((picture_of(&path)?.0, path)));
+        let mut document = match &last {
+            Some((document, _)) => document.clone(),
+            None if options.is_picture_given => document_of(&options),
+            None => Document::new(Origin::usual()),
+        };
+        document.stop = options.stop.unwrap_or(document.stop);
+        autosave.is_restoring = last.is_some();
+        let mut files = Files::default();
+        files.pending_resume = match (options.resume, last) {
+            (Some(path), _) => Some((path, options.recipe.job()?)),
+            (None, Some((document, path))) => Some((path, document.job(1)?)),
+            (None, None) => None,
+        };
+        let create = |path: &PathBuf| {
+            FrameLog::create(path).with_context(|| format!("cannot write {}", path.display()))
+        };
+        let frame_log = options.frame_log.as_ref().map(create).transpose()?;
+        let view = if options.is_fresh || options.is_picture_given { ViewState::default() } else { view };
+        Ok(Window {
+            changes: Changes::new(document.clone()),
+            model: Model {
+                document,
+                selected: None,
+                view,
+                own_stop: None,
+                remembered,
+                devices: DeviceOptions::of(&options.backend),
+                is_paused: false,
+                is_full_screen: false,
+                has_first_steps,
+                presentation: None,
+            },
+            tracing: Tracing::new().context("cannot start the render thread")?,
+            display: Display::default(),
+            tools: Tools::default(),
+            files,
+            autosave,
+            shell: Shell { frame_log, crashes_at: options.crashes_at, ..Shell::default() },
+            commands: Vec::new(),
+        })
+    }
+
+    pub(super) fn document(&self) -> &Document {
+        &self.model.document
+    }
+
+    /// Carries out a command in the next frame.
+    pub fn send(&mut self, command: Command) {
+        self.commands.push(command);
+    }
+
+    /// The state of the window now.
+    pub fn snapshot(&self) -> Snapshot {
+        let [undo, redo] = self.changes.labels(self.document());
+        Snapshot {
+            status: self.tracing.main.status().clone(),
+            seconds_before: self.tracing.seconds_before,
+            undo,
+            redo,
+            is_coarse: self.tracing.main.is_coarse(),
+            has_picture: self.tracing.main.has_picture(self.document()),
+            is_moving: self.changes.is_in_gesture,
+            is_held: self.tracing.main.is_held(),
+            is_lost: self.display.is_lost,
+            checked: self.tools.check.words().filter(|_| self.model.shows(Tab::Check)),
+            has_pixel: self.tools.inspector.hovered.is_some(),
+            has_paths: self.tools.paths.len() > 0,
+            has_sight: self.display.sight.is_some(),
+            invalid: self.tracing.invalid.clone(),
+            model: self.model.clone(),
+        }
+    }
+
+    /// Draws a frame.
+    pub fn ui_in(&mut self, ui: &mut egui::Ui) {
+        let context = ui.ctx().clone();
+        self.dress(&context);
+        self.poll(&context);
+        self.receive(&context);
+        self.take_input(&context);
+        self.perform_all(&context);
+        self.layout(ui);
+        self.perform_all(&context);
+        self.follow(&context);
+        theme::paint_focus(&context);
+        self.shell.had_focus = context.memory(|memory| memory.focused().is_some())
+            || egui::Popup::is_any_open(&context)
+            || self.shell.dialogs.is_open();
+    }
+
+    /// Sets fonts and colours, before the first frame.
+    pub(super) fn dress(&mut self, context: &egui::Context) {
+        if std::mem::replace(&mut self.shell.is_dressed, true) {
+            return;
+        }
+        theme::install(context);
+        context.set_theme(self.model.remembered.theme);
+        // A frame can take long while the device prepares a large scene.
+        context.options_mut(|options| options.input_options.max_click_duration = 5.0);
+        self.tracing.main.wake(context);
+        if let Some((path, job)) = self.files.pending_resume.take() {
+            self.files.resume(context, path, job, &self.model.document);
+        }
+        self.offer_left();
+    }
+
+    fn poll(&mut self, context: &egui::Context) {
+        let begin = Instant::now();
+        let pictured = self.tracing.main.poll(context);
+        let shell = &mut self.shell;
+        shell.frame_times.picture = begin.elapsed();
+        let status = self.tracing.main.status();
+        if shell.crashes_at.is_some_and(|samples| status.samples_per_pixel >= samples) {
+            panic!("injected fault");
+        }
+        if let Some(log) = &mut shell.frame_log {
+            if let Some(begun) = pictured {
+                log.pictured(begun);
+            }
+            if let Some(backend) = status.backend.as_ref().filter(|_| status.samples_per_pixel > 0) {
+                log.tracing(status.run, backend.name);
+            }
+        }
+    }
+
+    fn take_input(&mut self, context: &egui::Context) {
+        for path in input::dropped(context) {
+            self.files.open(context, path);
+        }
+        if self.shell.dialogs.is_open() {
+            return;
+        }
+        let is_presenting = self.model.presentation.is_some();
+        if !input::take_keys(context, is_presenting, &mut self.commands) {
+            return;
+        }
+        let is_escape =
+            || context.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape));
+        if !self.shell.had_focus && is_escape() {
+            self.escape();
+        }
+        let before = self.model.document.camera;
+        if self.model.view.looked().is_none() && input::fly(context, &mut self.model.document.camera) {
+            if let Some(reason) = self.document().no_rays() {
+                self.model.document.camera = before;
+                self.shell.toasts.good(reason);
+            } else {
+                self.changes.note_move();
+            }
+        }
+    }
+
+    fn perform_all(&mut self, context: &egui::Context) {
+        for command in std::mem::take(&mut self.commands) {
+            self.perform(context, command);
+        }
+    }
+
+    /// Starts what the changes of this frame ask for.
+    fn follow(&mut self, context: &egui::Context) {
+        // The selection may be of another scene.
+        let count = self.document().scene().spheres.len();
+        self.model.selected = self.model.selected.filter(|sphere| *sphere < count);
+        if let Err(error) = self.document().camera.validate() {
+            self.shell.toasts.bad(error.to_string());
+            self.model.document.camera = self.changes.last.camera;
+        }
+        self.ask_about_size();
+        let document = &self.model.document;
+        // A picture without noise ends at its own number of samples, whatever the user prefers.
+        if !document.is_from_file && document.origin.usual_stop().samples.is_none() {
+            self.model.own_stop = document.own_stop();
+        }
+        let room = self.display.viewport.room_pixels;
+        let needs_film = self.files.needs_film() || self.autosave.is_restoring;
+        self.tracing.follow_size(context, &mut self.model, room, needs_film);
+        if self.changes.follow(context, &self.model.document) {
+            self.tracing.seconds_before = Some(0.0);
+            self.model.view.end_look();
+            if let Some(log) = &mut self.shell.frame_log {
+                log.changed();
+            }
+        }
+        let is_moving = self.changes.is_moving();
+        if is_moving {
+            context.request_repaint_after(Duration::from_millis(40));
+        }
+        self.leave_useless_views();
+        let has_second = self.tracing.follow(context, &self.model, &self.changes);
+        let Window { model, tracing, display, tools, files, autosave, shell, .. } = self;
+        display.follow(context, model, tracing, is_moving, &mut shell.toasts);
+        let subject = Subject::new(&model.view, &model.document, tracing);
+        if let Some(found) = display.denoising.follow(context, &subject, model.view.is_denoised) {
+            model.view.denoised = Some(found);
+        }
+        let subject = Subject::new(&model.view, &model.document, tracing);
+        files.follow(context, &subject);
+        files.follow_sized(context, &mut shell.toasts);
+        if !autosave.is_restoring
+            && let Some(reason) = autosave.follow(context, &model.document, tracing)
+        {
+            let words =
+                format!("Not saved by itself: {reason}; rendering goes on, and saving is tried again");
+            shell.toasts.bad(words);
+        }
+        tools.follow(context, model, &subject, is_moving);
+        if !has_second {
+            model.view.end_comparison();
+        }
+        display.kept.follow(context, &model.document, tracing);
+    }
+}
+
+/// The document that the command line asks for.
+fn document_of(options: &WindowOptions) -> Document {
+    let WindowOptions { recipe, unchanged, stage, file, stop, .. } = options;
+    let origin = match (stage, file, Recipe::builtin(&recipe.name)) {
+        (_, None, _) if options.resume.is_some() => Origin::guess(unchanged, *stage),
+        (Some(stage), _, _) => Origin::of_stage(stage),
+        (None, Some(path), _) => Origin::new(unchanged.clone(), Source::File(path.clone())),
+        (None, None, Some(builtin)) => Origin::of_builtin(builtin),
+        (None, None, None) => Origin::guess(unchanged, None),
+    };
+    let mut document = Document::new(origin);
+    document.camera = recipe.camera;
+    document.settings = recipe.settings;
+    document.has_own_size |= options.is_size_given || options.resume.is_some();
+    document.stop = stop.unwrap_or(document.origin.usual_stop());
+    document
+}
+
+impl Drop for Window {
+    /// A panic does not lose the film.
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.end();
+        }
+    }
+}
+
+impl Window {
+    fn end(&mut self) {
+        self.autosave.end(&self.model, &mut self.tracing);
+    }
+}
+
+impl eframe::App for Window {
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        Stored::write(self.model.remembered.clone(), self.model.view.clone(), storage);
+    }
+
+    fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {
+        self.end();
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        if let Some(log) = &mut self.shell.frame_log {
+            let cpu = Duration::from_secs_f32(frame.info().cpu_usage.unwrap_or_default());
+            log.frame(frame_log::FrameTimes { cpu, ..self.shell.frame_times });
+        }
+        let begin = Instant::now();
+        self.ui_in(ui);
+        self.shell.frame_times.ui = begin.elapsed();
+    }
+
+    fn logic(&mut self, context: &egui::Context, _: &mut eframe::Frame) {
+        if self.shell.is_interrupted() {
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
+    }
+}

@@ -1,0 +1,654 @@
+//! Carries out commands. Those that touch several parts of the window have their own methods.
+
+use super::Window;
+use super::layout::NARROW;
+use crate::app::commands::Command;
+use crate::app::dialogs::{
+    Dialog, LargeSize, Outcome, Purpose, SaveBox, What, default_folder, file_name, samples_wanted, stage_list,
+};
+use crate::app::files::autosave::picture_of;
+use crate::app::model::spheres::grip::new_body;
+use crate::app::model::spheres::{self, Selected};
+use crate::app::model::{
+    Body, Bookmark, Device, Dock, Document, Edit, Mode, Model, Origin, Presentation, Remembered, Show,
+    Source, Tab, Tone, ViewState, With, companion, device, navigation,
+};
+use crate::app::toolkit::Finder;
+use crate::app::toolkit::widgets::focus;
+use crate::app::viewport::sight::Sighted;
+use crate::film::Film;
+use crate::job::output::OutputFormat;
+use crate::measure::grouped;
+use crate::stages::{BOOK_URL, Stage};
+use eframe::egui::{self, Context, FocusDirection, ViewportCommand};
+use std::path::{Path, PathBuf};
+use std::process;
+use std::sync::Arc;
+
+impl Window {
+    /// Carries out a command. A disabled command shows why it is disabled.
+    pub fn perform(&mut self, context: &Context, command: Command) {
+        self.shell.performed = Some(command);
+        let snapshot = self.snapshot();
+        if let Some(log) = &mut self.shell.frame_log {
+            log.command(&snapshot.name(command));
+        }
+        self.changes.end_move();
+        if command != Command::Blank
+            && let Some(presentation) = &mut self.model.presentation
+        {
+            presentation.is_blank = false;
+        }
+        match snapshot.disabled_reason(command) {
+            Some(reason) => self.refuse(&snapshot.name(command), &reason),
+            None => self.run(context, command),
+        }
+    }
+
+    fn run(&mut self, context: &Context, command: Command) {
+        use Command as C;
+        let Window { model, tracing, display, tools, files, shell, .. } = self;
+        let Model { document, view, remembered, .. } = model;
+        match command {
+            C::Open => self.ask_path(context, Purpose::Open),
+            C::CheckPicture => self.ask_path(context, Purpose::Check),
+            C::Save => self.ask_save(OutputFormat::Png),
+            C::SaveAs(format) => self.ask_save(format),
+            C::Recent(place) => self.open_recent(context, place),
+            C::ShowInFolder => self.show_in_folder(context),
+            C::CopyPicture => files.pending_copy = true,
+            C::CopyCommand => self.copy_command(context),
+            C::Fresh => self.start_fresh(),
+            C::Quit => context.send_viewport_cmd(ViewportCommand::Close),
+            C::StopSaving => files.stop_saving(),
+            C::Recover => self.autosave.left().into_iter().for_each(|path| files.open(context, path)),
+
+            C::Undo => self.undo(),
+            C::Redo => self.redo(),
+            C::ResetAll => self.change(|window| window.model.document.reset()),
+            C::AddSphere => self.add_sphere(),
+            C::DuplicateSphere => self.duplicate_sphere(),
+            C::DeleteSphere => model.selected.into_iter().for_each(|sphere| self.edit(Edit::Delete(sphere))),
+            C::NextSphere => model.selected = spheres::neighbour(document.scene(), model.selected, true),
+            C::PreviousSphere => model.selected = spheres::neighbour(document.scene(), model.selected, false),
+            C::FocusSphere => self.focus_sphere(),
+            C::SkyColours => shell.dialogs.open(Dialog::Sky),
+            C::Home => document.camera = document.origin.recipe.camera,
+            C::AddBookmark => self.add_bookmark(),
+            C::Bookmark(place) => {
+                remembered.bookmarks.get(place).into_iter().for_each(|to| document.camera = to.camera)
+            }
+
+            C::Fit => display.viewport.placement.fit(),
+            C::ActualSize => display.viewport.placement.actual_size(),
+            C::ZoomIn => display.viewport.placement.zoom_by(1.25),
+            C::ZoomOut => display.viewport.placement.zoom_by(0.8),
+            C::Show(show) => view.choose(show),
+            C::Channel(channel) => view.tone.toggle(channel),
+            C::Brighter => view.tone.expose(Tone::STEP),
+            C::Darker => view.tone.expose(-Tone::STEP),
+            C::NoExposure => view.tone.exposure = 0.0,
+            C::Denoise => view.is_denoised ^= true,
+            C::Theme(theme) => {
+                remembered.theme = theme;
+                context.set_theme(theme);
+            }
+            C::Controls => self.toggle(|remembered| &mut remembered.has_controls),
+            C::Info => self.toggle(|remembered| &mut remembered.has_info),
+            C::Code => {
+                let tab = if model.shows(Tab::Code) { Tab::Stage } else { Tab::Code };
+                let remembered = &mut model.remembered;
+                (remembered.tab, remembered.has_panels, remembered.has_info) = (tab, true, true);
+            }
+            C::Field(name) => {
+                (remembered.has_panels, remembered.has_controls) = (true, true);
+                if context.content_rect().width() < NARROW {
+                    remembered.tab = Tab::Controls;
+                }
+                focus(context, name);
+            }
+            C::FocusControls => context.memory_mut(|memory| memory.move_focus(FocusDirection::Next)),
+            C::KeptDock => self.toggle_dock(Dock::Kept),
+            C::LanesDock => self.toggle_dock(Dock::Lanes),
+            C::ErrorDock => self.toggle_dock(Dock::Error),
+            C::Panels => self.toggle_panels(),
+            C::Present => self.toggle_presentation(context),
+            C::Blank => model.presentation.iter_mut().for_each(|shown| shown.is_blank ^= true),
+            C::FullScreen => self.fill_screen(context, !self.model.is_full_screen),
+
+            C::Pause => self.pause_or_go_on(context),
+            C::Restart => {
+                if std::mem::take(&mut model.is_paused) {
+                    tracing.resume();
+                }
+                tracing.restart();
+            }
+            C::RenderAtSize => {
+                document.has_own_size = false;
+                tracing.sizer.ask();
+            }
+            C::Device(device) => remembered.device = device,
+            C::SwitchDevice => remembered.device.toggle(Device::Gpu),
+            C::Reference => remembered.device.toggle(Device::Reference),
+
+            C::Keep => display.kept.is_wanted = true,
+            C::Kept(place) => view.look(place),
+            C::Flip => view.flip(),
+            C::KeptWipe => view.toggle(Mode::Wipe, With::Kept),
+            C::KeptDifference => view.toggle(Mode::Difference, With::Kept),
+            C::OnlyNoise => self.ask_only_noise(context),
+            C::GoOnFromKept => self.go_on_from_kept(),
+            C::DeleteKept => view.delete_kept(),
+
+            C::Stages => self.list_stages(false),
+            C::ExtremeScenes => self.list_stages(true),
+            C::Stage(stage) => self.show_origin(Origin::of_stage(stage)),
+            C::Extreme(case) => self.show_origin(Origin::of_case(case)),
+            C::PreviousStage => self.step_stage(false),
+            C::NextStage => self.step_stage(true),
+            C::ShowMe => self.toggle_sight(),
+            C::Wipe => self.compare(Mode::Wipe),
+            C::Difference => self.compare(Mode::Difference),
+            C::BookArithmetic => view.toggle(Mode::Wipe, With::Book),
+            C::ListPaths => self.list_paths(context),
+            C::NextRay => tools.paths.step(true),
+            C::PreviousRay => tools.paths.step(false),
+            C::ClearPaths => {
+                tools.paths.forget();
+                remembered.dock.take_if(|dock| *dock == Dock::Path);
+            }
+            C::Book => {
+                let url = document.stage().map_or_else(|| BOOK_URL.into(), Stage::url);
+                self.open_url(context, url);
+            }
+            C::Companion => self.write_companion(context, true),
+            C::WholeCompanion => self.write_companion(context, false),
+            C::StopCompanion => files.stop_companion(),
+
+            C::FirstSteps => {
+                (model.has_first_steps, remembered.is_greeted) =
+                    (!model.has_first_steps, model.has_first_steps);
+            }
+            C::Help => shell.dialogs.open(Dialog::Help),
+            C::Palette => shell.dialogs.open(Dialog::Palette(Finder::typed(context))),
+            C::About => shell.dialogs.open(Dialog::About),
+        }
+    }
+
+    fn refuse(&mut self, name: &str, reason: &str) {
+        let mut letters = reason.chars();
+        let reason: String = letters.next().into_iter().flat_map(char::to_lowercase).chain(letters).collect();
+        self.shell.toasts.good(format!("{}: {reason}", name.trim_end_matches('…')));
+    }
+
+    /// Leaves the innermost thing that can be left.
+    pub(super) fn escape(&mut self) {
+        let Window { model, tools, display, commands, .. } = self;
+        if model.presentation.is_some() {
+            commands.push(Command::Present);
+        } else if model.view.looked().is_some() {
+            model.view.end_look();
+        } else if tools.paths.len() > 0 {
+            commands.push(Command::ClearPaths);
+        } else if display.sight.is_some() {
+            commands.push(Command::ShowMe);
+        } else if model.view.mode().is_some() || model.view.show() != Show::Picture {
+            model.view.choose(Show::Picture);
+        } else if model.selected.is_some() {
+            model.selected = None;
+        } else if model.has_first_steps {
+            commands.push(Command::FirstSteps);
+        } else if model.remembered.dock.is_some() {
+            model.remembered.dock = None;
+        } else if model.is_full_screen {
+            commands.push(Command::FullScreen);
+        }
+    }
+
+    // The picture that is shown
+
+    /// Shows another picture. The user's own way to stop stays, unless the picture has its own.
+    pub(super) fn show_origin(&mut self, origin: Origin) {
+        let mut document = Document::new(origin);
+        if let Some(stop) = self.model.own_stop.filter(|_| document.stop.samples.is_none()) {
+            document.stop = stop;
+        }
+        let before = self.document();
+        if before.is_changed() && !before.is_from_file {
+            let words = format!("Your changes to {} are kept in Undo", before.place());
+            self.shell.toasts.good_with(words, &[Command::Undo]);
+        }
+        self.show_document(document);
+    }
+
+    pub(super) fn show_document(&mut self, document: Document) {
+        self.end_sight();
+        self.model.document = document;
+        self.model.selected = None;
+        self.tools.forget();
+    }
+
+    pub(super) fn step_stage(&mut self, is_next: bool) {
+        if let Some(stage) = self.model.neighbour(is_next) {
+            self.show_origin(Origin::of_stage(stage));
+        }
+    }
+
+    /// Opens the list of stages at the current one or, for the extreme scenes, at its end.
+    fn list_stages(&mut self, is_at_end: bool) {
+        let finder = stage_list::list(&self.snapshot(), is_at_end);
+        self.shell.dialogs.open(Dialog::Stages(finder));
+    }
+
+    pub(super) fn start_fresh(&mut self) {
+        let kept = std::mem::take(&mut self.model.view.kept);
+        self.model.view = ViewState::default();
+        self.model.view.kept = kept;
+        self.display.viewport.placement.fit();
+        self.model.is_paused = false;
+        self.show_document(Document::new(Origin::usual()));
+    }
+
+    // Undo
+
+    pub(super) fn undo(&mut self) {
+        let [undone, _] = self.changes.labels(self.document());
+        self.change(|window| window.changes.undo(&mut window.model.document));
+        self.shell.toasts.withdraw(Command::Redo);
+        self.shell.toasts.good_with(format!("Undone: {}", undone.unwrap_or_default()), &[Command::Redo]);
+    }
+
+    pub(super) fn redo(&mut self) {
+        self.shell.toasts.withdraw(Command::Redo);
+        self.change(|window| window.changes.redo(&mut window.model.document));
+    }
+
+    /// Changes the document. With other spheres, the selection would be another one.
+    pub(super) fn change(&mut self, change: impl FnOnce(&mut Self)) {
+        let scene = |window: &Self| {
+            let document = window.document();
+            (Arc::as_ptr(&document.origin), document.scene().spheres.len())
+        };
+        let before = scene(self);
+        change(self);
+        if scene(self) != before {
+            self.model.selected = None;
+        }
+    }
+
+    // Camera and spheres
+
+    pub(super) fn add_bookmark(&mut self) {
+        let (document, bookmarks) = (&self.model.document, &mut self.model.remembered.bookmarks);
+        let is_free = |name: &String| bookmarks.iter().all(|bookmark| bookmark.name != *name);
+        let place = document.place();
+        let name = (1..).map(|number| format!("{place} view {number}")).find(is_free).unwrap_or_default();
+        bookmarks.push(Bookmark { name, camera: document.camera });
+        self.shell.toasts.good("Bookmarked; View > Bookmarks jumps back to it");
+    }
+
+    pub(super) fn edit(&mut self, edit: Edit) {
+        if let Err(reason) = spheres::edit(&mut self.model, edit) {
+            self.shell.toasts.bad(reason);
+        }
+    }
+
+    pub(super) fn add_sphere(&mut self) {
+        let (document, place) = (self.document(), self.display.viewport.aim());
+        let body =
+            new_body(document.pick(&document.camera, place), &document.camera, document.aspect(), place);
+        self.edit(Edit::Add(body));
+    }
+
+    /// Puts a copy to the right of the selected sphere.
+    pub(super) fn duplicate_sphere(&mut self) {
+        if let Some(Selected { body, .. }) = Selected::of(&self.model) {
+            let center = body.center + 2.2 * body.radius * self.document().camera.basis().u;
+            self.edit(Edit::Add(Body { center, ..body }));
+        }
+    }
+
+    pub(super) fn focus_sphere(&mut self) {
+        let Some(selected) = Selected::of(&self.model) else { return };
+        let camera = self.document().camera;
+        let towards = (camera.look_from - selected.body.center).normalize_or_zero();
+        let nearest = selected.body.center + selected.body.radius * towards;
+        let is_ahead = camera.depth_of(nearest) > 0.0;
+        let point = if is_ahead { nearest } else { selected.body.center };
+        self.model.document.camera = navigation::focus(&camera, point);
+        if camera.defocus_angle_degrees == 0.0 {
+            self.shell.toasts.good("A pinhole is sharp everywhere; set a defocus angle");
+        }
+    }
+
+    // View
+
+    /// Compares with the other stage; a picture that is no stage, with the book's arithmetic.
+    pub(super) fn compare(&mut self, mode: Mode) {
+        let is_by_book = self.document().stage().is_none() || self.model.view.with() == With::Book;
+        self.model.view.toggle(mode, if is_by_book { With::Book } else { With::Stage });
+    }
+
+    /// Leaves views and comparisons that the picture of now cannot have.
+    pub(super) fn leave_useless_views(&mut self) {
+        let show = self.model.view.show();
+        if let Some(reason) = self.model.useless_show(show).filter(|_| show != Show::Picture) {
+            self.refuse(show.name(), &reason);
+            self.model.view.leave_show();
+        }
+        let is_kept_difference =
+            self.model.view.mode() == Some(Mode::Difference) && self.model.view.compared_kept().is_some();
+        if let Some(reason) = self.model.not_subtractable().filter(|_| is_kept_difference) {
+            self.shell.toasts.good(reason);
+            self.model.view.end_comparison();
+        }
+        let Some(sight) = &self.display.sight else { return };
+        if sight.is_of_another(&self.model.document) {
+            self.end_sight();
+        } else if !sight.lasts(&self.model.document, &self.model.view) {
+            self.display.sight = None;
+        }
+    }
+
+    pub(super) fn toggle_sight(&mut self) {
+        if self.display.sight.is_some() {
+            self.end_sight();
+            return;
+        }
+        let Some(stage) = self.document().stage() else { return };
+        let (document, view) = (&mut self.model.document, &mut self.model.view);
+        self.display.sight =
+            Some(Sighted::begin(stage, document, view, &mut self.display.viewport.placement));
+    }
+
+    pub(super) fn end_sight(&mut self) {
+        if let Some(sight) = self.display.sight.take() {
+            let (document, view) = (&mut self.model.document, &mut self.model.view);
+            sight.end(document, view, &mut self.display.viewport.placement);
+        }
+    }
+
+    pub(super) fn list_paths(&mut self, context: &Context) {
+        if let Some(pixel) = self.tools.inspector.hovered {
+            self.tools.paths.list(&self.model.document, pixel, context);
+            self.model.remembered.dock = Some(Dock::Path);
+        }
+    }
+
+    // Panels
+
+    /// Shows or hides a panel. If all are hidden, shows them with this one.
+    pub(super) fn toggle(&mut self, panel: impl FnOnce(&mut Remembered) -> &mut bool) {
+        let remembered = &mut self.model.remembered;
+        let had_panels = std::mem::replace(&mut remembered.has_panels, true);
+        let panel = panel(remembered);
+        *panel = !*panel || !had_panels;
+    }
+
+    pub(super) fn toggle_dock(&mut self, dock: Dock) {
+        let remembered = &mut self.model.remembered;
+        let is_open = remembered.has_panels && remembered.dock == Some(dock);
+        remembered.has_panels = true;
+        remembered.dock = if is_open { None } else { Some(dock) };
+    }
+
+    pub(super) fn toggle_panels(&mut self) {
+        if let Some(presentation) = &mut self.model.presentation {
+            presentation.has_captions = !presentation.has_captions;
+            return;
+        }
+        let has_panels = &mut self.model.remembered.has_panels;
+        *has_panels = !*has_panels;
+        if !*has_panels {
+            self.shell.toasts.good("Tab brings the panels back");
+        }
+    }
+
+    pub(super) fn fill_screen(&mut self, context: &Context, is_full: bool) {
+        if self.model.is_full_screen != is_full {
+            self.model.is_full_screen = is_full;
+            context.send_viewport_cmd(ViewportCommand::Fullscreen(is_full));
+        }
+    }
+
+    pub(super) fn toggle_presentation(&mut self, context: &Context) {
+        match self.model.presentation.take() {
+            Some(presentation) => {
+                self.display.viewport.placement = self.display.viewport.parked.clone();
+                self.fill_screen(context, presentation.was_full_screen);
+            }
+            None => {
+                self.display.viewport.parked = self.display.viewport.placement.clone();
+                let was_full_screen = self.model.is_full_screen;
+                self.model.presentation =
+                    Some(Presentation { was_full_screen, has_captions: true, is_blank: false });
+                self.model.view.end_look();
+                self.fill_screen(context, true);
+            }
+        }
+    }
+
+    // Tracing
+
+    pub(super) fn pause_or_go_on(&mut self, context: &Context) {
+        let further = self.document().further(self.tracing.main.status());
+        if let Some(stop) = further.filter(|_| !self.model.is_paused) {
+            self.model.document.stop = stop;
+            return;
+        }
+        self.model.is_paused = !self.model.is_paused;
+        if self.model.is_paused {
+            self.tracing.pause(context);
+        } else {
+            self.tracing.resume();
+        }
+    }
+
+    // Kept pictures
+
+    /// Tests whether the shown picture and the chosen kept one differ by noise alone.
+    pub(super) fn ask_only_noise(&mut self, context: &Context) {
+        let Window { model, tracing, display, .. } = self;
+        if let Some(kept) = model.view.kept.meant() {
+            display.kept.verdict.ask(context, kept, (&model.document, &tracing.main));
+            model.remembered.dock = Some(Dock::Kept);
+        }
+    }
+
+    /// Goes on with the chosen kept picture.
+    pub(super) fn go_on_from_kept(&mut self) {
+        let Some(kept) = self.model.view.kept.meant().cloned() else { return };
+        match kept.film.try_copy() {
+            Ok(film) => {
+                self.show_document(Document { has_own_size: true, ..kept.document.clone() });
+                self.model.view.end_comparison();
+                self.adopt(film, kept.seconds);
+            }
+            Err(error) => self.shell.toasts.bad(error.to_string()),
+        }
+    }
+
+    /// Goes on with this film of the document.
+    pub(super) fn adopt(&mut self, film: Film, seconds: Option<f64>) {
+        (self.tracing.film, self.tracing.seconds_before) = (Some(film), seconds);
+        self.changes.last = self.model.document.clone();
+    }
+
+    // Files
+
+    pub(super) fn ask_path(&mut self, context: &Context, purpose: Purpose) {
+        let from = self.folder();
+        self.shell.dialogs.system.ask(context, purpose, from);
+    }
+
+    /// Opens the dialog of saving with this format chosen.
+    pub(super) fn ask_save(&mut self, format: OutputFormat) {
+        let (name, what) = (file_name(self.document()), What::Picture(format));
+        let save = SaveBox::new(&name, self.folder(), what, self.document().size());
+        self.shell.dialogs.open(Dialog::Save(save));
+    }
+
+    /// The folder in which the user is at work.
+    fn folder(&self) -> PathBuf {
+        let last = self.model.remembered.recent.first().and_then(|path| path.parent());
+        let last = last.filter(|folder| folder.is_dir()).map(Path::to_owned);
+        last.or_else(default_folder).or_else(|| std::env::current_dir().ok()).unwrap_or_default()
+    }
+
+    pub(super) fn end_dialog(&mut self, context: &Context, outcome: Outcome) {
+        match outcome {
+            Outcome::Named(Purpose::Check, path) => self.tools.check.begin(context, &path, None),
+            Outcome::Named(_, path) => self.files.open(context, path),
+            Outcome::Save(what, size, path) => {
+                // If this fails, writing the file tells why.
+                let _ = path.parent().map(std::fs::create_dir_all);
+                self.save_as(context, what, size, path);
+            }
+            Outcome::Size(size) => {
+                self.tracing.sizer.accepted = Some(size);
+                self.model.document.give_size(size);
+            }
+            Outcome::Stay | Outcome::Close => {}
+        }
+    }
+
+    fn save_as(&mut self, context: &Context, what: What, size: [u32; 2], path: PathBuf) {
+        let document = &self.model.document;
+        match what {
+            What::Scene => self.files.save_scene(context, path, document),
+            What::Picture(format) if size == document.size() => {
+                self.files.pending_save = Some((format, path));
+            }
+            What::Picture(format) => {
+                let samples = samples_wanted(document, self.tracing.main.status());
+                let mut document = document.clone();
+                document.give_size(size);
+                let backend = self.model.backend();
+                let named = (format, path);
+                let begun = self.files.save_rendered(context, (document, samples), backend, named);
+                if let Err(reason) = begun {
+                    self.shell.toasts.bad(format!("Not saved: {reason}"));
+                }
+            }
+        }
+    }
+
+    /// Asks before a size is rendered that needs much memory or time. Until then the picture has the size of before.
+    pub(super) fn ask_about_size(&mut self) {
+        let (size, before) = (self.document().size(), &self.changes.last);
+        if size == before.size() || self.tracing.film.is_some() || self.tracing.sizer.accepted == Some(size) {
+            return;
+        }
+        let before = if Arc::ptr_eq(&before.origin, &self.document().origin) {
+            (before.size(), before.has_own_size)
+        } else {
+            let room = self.display.viewport.room_pixels;
+            (self.document().origin.size_in(room).unwrap_or(before.size()), true)
+        };
+        if let Some(large) = LargeSize::of(self.document(), self.tracing.main.status(), size, before.0) {
+            self.model.document.set_size(before.0);
+            self.model.document.has_own_size = before.1;
+            self.shell.dialogs.open(Dialog::Large(large));
+        }
+    }
+
+    /// Offers the film of a window that ended early.
+    pub(super) fn offer_left(&mut self) {
+        let Some((document, samples)) = self.autosave.left().and_then(|path| picture_of(&path)) else {
+            return;
+        };
+        let (name, samples) = (document.place(), grouped(samples));
+        let words =
+            format!("The last window ended early. {name} with {samples} samples per pixel was saved.");
+        self.shell.toasts.offer(words, &[Command::Recover]);
+    }
+
+    pub(super) fn open_recent(&mut self, context: &Context, place: usize) {
+        let recent = &mut self.model.remembered.recent;
+        let Some(path) = recent.get(place).cloned() else { return };
+        if path.exists() {
+            self.files.open(context, path);
+        } else {
+            recent.remove(place);
+            self.shell.toasts.bad(format!("{} is no longer there; the list drops it", path.display()));
+        }
+    }
+
+    pub(super) fn show_in_folder(&mut self, context: &Context) {
+        let Some(folder) = self.model.remembered.recent.first().and_then(|path| path.parent()) else {
+            return;
+        };
+        let manager = match std::env::consts::OS {
+            "windows" => "explorer",
+            "macos" => "open",
+            _ => "xdg-open",
+        };
+        let has_desktop = self.shell.dialogs.system.is_there;
+        if !has_desktop || process::Command::new(manager).arg(folder).spawn().is_err() {
+            self.open_url(context, companion::file_url(folder));
+        }
+    }
+
+    /// Opens a page in the browser, or tells its address. Returns whether there is a browser.
+    pub(super) fn open_url(&mut self, context: &Context, url: String) -> bool {
+        let has_browser = !self.shell.dialogs.system.is_there || webbrowser::Browser::is_available();
+        if has_browser {
+            context.open_url(egui::OpenUrl::new_tab(url));
+        } else {
+            self.shell.toasts.bad(format!("No browser could be started; the page is {url}"));
+        }
+        has_browser
+    }
+
+    pub(super) fn write_companion(&mut self, context: &Context, is_quick: bool) {
+        match self.files.write_companion(context, is_quick) {
+            Ok(()) => {
+                let time = if is_quick { "about 3 s" } else { "some minutes" };
+                let words = format!("Writing the companion, {time}…");
+                self.shell.toasts.offer(words, &[Command::StopCompanion]);
+            }
+            Err(reason) => self.shell.toasts.bad(reason),
+        }
+    }
+
+    /// Opens the companion that was written at the stage that is shown.
+    pub(super) fn show_companion(&mut self, context: &Context, written: Result<bool, String>) {
+        let is_stopped = self.files.end_companion();
+        self.shell.toasts.withdraw(Command::StopCompanion);
+        let Some(folder) = self.files.companion_folder() else { return };
+        match written {
+            Ok(_) if is_stopped => {}
+            Ok(true) => self.shell.toasts.good("The full companion is written; reload it in your browser"),
+            Ok(false) => {
+                let url = companion::url(&folder.join("index.html"), self.document().stage());
+                if self.open_url(context, url) {
+                    let words = "The companion is open in your browser";
+                    self.shell.toasts.good_with(words, &[Command::WholeCompanion]);
+                }
+            }
+            Err(reason) => self.shell.toasts.bad(format!("The companion was not written: {reason}")),
+        }
+    }
+
+    /// Copies the command that renders the picture, and says what it needs.
+    pub(super) fn copy_command(&mut self, context: &Context) {
+        let (document, main) = (&self.model.document, &self.tracing.main);
+        let samples = match main.status().samples_per_pixel {
+            samples @ 1.. if main.is_full(document) => samples,
+            _ => document.stop.samples.unwrap_or(document.origin.recipe.samples_per_pixel),
+        };
+        let device = self.model.remembered.device;
+        let is_gpu = matches!(device, Device::Gpu | Device::Both);
+        let adapter = device::adapter().ok().filter(|adapter| is_gpu && adapter.is_software);
+        let adapter = adapter.map(|adapter| adapter.name.as_str());
+        context.copy_text(document.command_line(samples.max(1), device.name(), adapter));
+        let needs_file = document.has_changed_scene()
+            || matches!(document.origin.source, Source::Embedded | Source::Extreme(_));
+        let is_saved = document.checked.file().is_some();
+        self.shell.toasts.good(if needs_file && !is_saved {
+            "Copied; the scene has no file yet: save it, since the command reads it"
+        } else {
+            "Copied: the command line that renders this picture"
+        });
+    }
+}

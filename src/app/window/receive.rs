@@ -1,0 +1,137 @@
+//! What background threads have answered.
+
+use super::Window;
+use crate::app::commands::Command;
+use crate::app::files::Resumed;
+use crate::app::files::autosave::document_of;
+use crate::app::model::{Dock, Document, Kept, Origin, Source};
+use crate::job::saved::{Opened, Saved};
+use crate::progressive::Stop;
+use eframe::egui::Context;
+use std::sync::Arc;
+
+impl Window {
+    /// Takes all answers that have arrived.
+    pub(super) fn receive(&mut self, context: &Context) {
+        while let Some(outcome) = self.files.saved.take() {
+            match outcome {
+                Ok(path) => {
+                    self.model.remembered.note_recent(&path);
+                    let name = path.file_name().unwrap_or(path.as_os_str()).display();
+                    self.shell.toasts.good_with(format!("Saved {name}"), &[Command::ShowInFolder]);
+                }
+                Err(reason) => {
+                    self.shell.toasts.bad(format!("Not saved: {reason}"));
+                    self.shell.toasts.add_offers(&[Command::Save]);
+                }
+            }
+        }
+        while let Some(outcome) = self.files.opened.take() {
+            match outcome {
+                Ok(Ok(opened)) => self.show_opened(opened),
+                // A picture of another program is the user's own, to be checked.
+                Ok(Err(path)) => self.tools.check.begin(context, &path, None),
+                Err(reason) => self.shell.toasts.bad(format!("Not opened: {reason}")),
+            }
+        }
+        self.tools.check.follow(&mut self.model.remembered);
+        while let Some(Ok((picture, what))) = self.files.copied.take() {
+            self.shell.toasts.good(format!("Copied the {what}"));
+            context.copy_image(picture);
+        }
+        while let Some(outcome) = self.display.kept.copied.take() {
+            match outcome {
+                Ok(kept) => self.add_kept(kept),
+                Err(reason) => self.shell.toasts.bad(format!("Not kept: {reason}")),
+            }
+        }
+        self.display.kept.verdict.0.follow();
+        while let Some(outcome) = self.files.resumed.take() {
+            match outcome {
+                Ok(resumed) => self.go_on(resumed),
+                Err(reason) => self.shell.toasts.bad(format!("Not resumed: {reason}")),
+            }
+            self.autosave.is_restoring = false;
+        }
+        while let Some(outcome) = self.files.companions.take() {
+            self.show_companion(context, outcome);
+        }
+        if let Some(outcome) = self.shell.dialogs.chosen() {
+            self.end_dialog(context, outcome);
+        }
+        self.follow_scene_file(context);
+        let device = &mut self.model.remembered.device;
+        self.tracing.report(device, &mut self.shell.toasts);
+    }
+
+    fn show_opened(&mut self, Opened { path, recipe, saved, .. }: Opened) {
+        let is_left = self.autosave.left().as_ref() == Some(&path);
+        let mut document = match &saved {
+            None => Document::new(Origin::new(recipe, Source::File(path.clone()))),
+            Some(saved) => document_of(saved, &recipe),
+        };
+        (document.has_own_size, document.is_from_file) =
+            (document.has_own_size || !is_left, document.is_from_file || !is_left);
+        if let Some(samples) = saved.as_ref().filter(|saved| saved.film.is_none()).and_then(Saved::samples) {
+            document.stop = Stop::at_samples(samples);
+        }
+        self.show_document(document);
+        self.shell.toasts.good(if is_left {
+            format!("Going on with {}", self.document().place())
+        } else {
+            self.model.remembered.note_recent(&path);
+            let name = path.file_name().unwrap_or(path.as_os_str()).display();
+            format!("Opened {name}; its size and samples hold for this picture only")
+        });
+        if let Some(film) = saved.and_then(Saved::into_film) {
+            self.adopt(film.film, film.seconds);
+        }
+    }
+
+    /// Goes on with a film, unless the picture has been changed meanwhile.
+    fn go_on(&mut self, Resumed { path, begun, film }: Resumed) {
+        let is_quiet = self.autosave.is_restoring;
+        if !self.document().has_same_film(&begun) {
+            if !is_quiet {
+                let words = "the picture was changed before it had been read; open the file to continue it";
+                self.shell.toasts.bad(format!("Not resumed from {}: {words}", path.display()));
+            }
+            return;
+        }
+        self.adopt(film.film, film.seconds);
+        if !is_quiet {
+            self.shell.toasts.good(format!("Going on with {}", self.document().place()));
+            self.model.remembered.note_recent(&path);
+        }
+    }
+
+    fn add_kept(&mut self, kept: Kept) {
+        let place = self.model.view.keep(kept);
+        if self.model.remembered.dock.is_none() {
+            self.model.remembered.dock = Some(Dock::Kept);
+        }
+        self.shell.toasts.good(format!("Kept as number {}", place + 1));
+    }
+
+    /// Watches the scene file, and takes what was read from it again.
+    fn follow_scene_file(&mut self, context: &Context) {
+        let origin = Arc::clone(&self.document().origin);
+        self.files.scene_file.watch(context, &origin);
+        let Source::File(path) = &origin.source else { return };
+        let name = path.file_name().unwrap_or(path.as_os_str()).display();
+        while let Some(recipe) = self.files.scene_file.reread.take() {
+            let is_own = self.document().checked.file().is_some_and(|saved| saved == *path);
+            match recipe {
+                _ if is_own => {}
+                Ok(recipe) => {
+                    let reloaded = self.document().reloaded(recipe);
+                    self.show_document(reloaded);
+                    self.shell.toasts.good(format!("Reloaded {name}; Undo returns"));
+                }
+                Err(reason) => self.shell.toasts.bad(format!(
+                    "Not reloaded: {reason}. The picture shows the last version that could be read"
+                )),
+            }
+        }
+    }
+}

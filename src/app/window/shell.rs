@@ -1,0 +1,29 @@
+//! What surrounds the picture: dialogs, messages, the presentation, keyboard focus, and the log of frames.
+
+use super::frame_log::{FrameLog, FrameTimes};
+use crate::app::dialogs::Dialogs;
+use crate::app::toolkit::Toasts;
+use crate::system::interrupt::Interrupt;
+use std::sync::Arc;
+
+#[derive(Default)]
+pub struct Shell {
+    pub dialogs: Dialogs,
+    pub toasts: Toasts,
+    pub frame_log: Option<FrameLog>,
+    pub frame_times: FrameTimes,
+    /// The command that was carried out last.
+    pub performed: Option<crate::app::commands::Command>,
+    /// Something had the keyboard's focus, a popup or a dialog was open, in the frame before.
+    pub had_focus: bool,
+    pub is_dressed: bool,
+    /// Samples per pixel at which the program panics (fault injection).
+    pub crashes_at: Option<u64>,
+    pub interrupt: Option<Arc<Interrupt>>,
+}
+
+impl Shell {
+    pub fn is_interrupted(&self) -> bool {
+        self.interrupt.as_ref().is_some_and(|interrupt| interrupt.is_set())
+    }
+}
