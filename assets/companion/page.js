@@ -115,7 +115,7 @@
 
   // The current chapter's sections are in the list.
   const sections = [...document.querySelectorAll(".chapter")];
-  sections.forEach((section) => section.style.setProperty("--text", section.textContent.length));
+  sections.forEach((section) => section.style.setProperty("--length", section.textContent.length));
   const headingsOf = (section) => (section ? [...section.querySelectorAll(":is(h2, h3)[id]")] : []);
   const hasPassed = (element) => element.getBoundingClientRect().top < innerHeight * 0.3;
   const point = (link, isCurrent) => {
