@@ -27,13 +27,11 @@ export class Picture {
     return this.mean(light, part);
   }
 
-  // How much a block of 6 by 6 pixels, in which noise averages out, differs from its right neighbour.
-  shapes([left, top, right, bottom]) {
-    const size = 6, block = (x, y) => this.light([x / this.width, y / this.height, (x + size) / this.width, (y + size) / this.height]);
-    let sum = 0, count = 0;
-    for (let y = Math.round(top * this.height); y + size <= bottom * this.height; y += size)
-      for (let x = Math.round(left * this.width); x + 2 * size <= right * this.width; x += size, count++) sum += Math.abs(block(x, y) - block(x + size, y));
-    return sum / count;
+  // The greatest step of light from one row of a part to the next.
+  steepest([left, top, right, bottom]) {
+    const rows = [];
+    for (let y = Math.round(top * this.height); y < Math.round(bottom * this.height); y++) rows.push(this.light([left, y / this.height, right, (y + 1) / this.height]));
+    return Math.max(...rows.slice(1).map((row, i) => Math.abs(row - rows[i])));
   }
 
   difference(other, part) {
@@ -49,10 +47,11 @@ const within = (low, value, high) => (low < value && value < high) || value;
 const below = (value, limit) => within(-Infinity, value, limit);
 const isRed = ([r, g]) => r > 200 && g < 60;
 const isGround = ([r, g, b]) => g > 1.25 * b && r > 1.1 * b;
+const isBlue = ([r, , b]) => b > 1.5 * r;
 const isSky = ([r, g, b]) => b > 1.05 * r && b > 150;
-// Of the ball in the middle, and of the three balls of chapters 10 and 11.
-const all = [0, 0, 1, 1], UNDER = [0.45, 0.68, 0.55, 0.74], RIM = [0.6, 0.5, 0.74, 0.65], GLASS_RIM = [0.07, 0.3, 0.11, 0.7], GLASS_TOP = [0.18, 0.3, 0.26, 0.4], GLASS_FLOOR = [0.18, 0.6, 0.26, 0.7];
-const MIDDLE = [0.42, 0.35, 0.58, 0.65], TOP = [0.46, 0.24, 0.54, 0.3], LEFT = [0.15, 0.35, 0.29, 0.65], RIGHT = [0.71, 0.35, 0.85, 0.65];
+const UNDER = [0.45, 0.68, 0.55, 0.74], RIM = [0.6, 0.5, 0.74, 0.65], GLASS_TOP = [0.05, 0.28, 0.2, 0.38], MIRROR = [0.08, 0.42, 0.18, 0.7];
+const BALL_EDGE = [0.76, 0.45, 0.84, 0.85], ARC = [0.05, 0.35, 0.12, 0.7], FRONT = [0.1, 0.8, 0.9, 1], FOCUS = [0.48, 0.3, 0.62, 0.55];
+const MIDDLE = [0.42, 0.35, 0.58, 0.65];
 
 export const claims = [
   ["diffuse?depth=1", "leaves the ball black", (now) => now.light(MIDDLE) < 2],
@@ -68,20 +67,26 @@ export const claims = [
   ["antialiased?samples=1", "the staircase returns", (now, was) => now.mean((pixel, x, y) => far(pixel, was.at(x, y)), RIM) > 0.02],
   ["antialiased?samples=4", "a few steps of grey", (now, was) => within(0.002, now.mean((pixel, x, y) => far(pixel, was.at(x, y)), RIM), 0.02)],
   ["shadow-acne?depth=3", "the ball turns darker", (now, was) => below(now.light(MIDDLE) / was.light(MIDDLE), 0.9)],
-  ["metal?fuzz=0.2", "it blurs", (now, was) => below(now.shapes(LEFT) / was.shapes(LEFT), 0.9)],
-  ["metal?depth=2", "turns black", (now, was) => now.mean(isBlack, LEFT) > 0.1 && was.mean(isBlack, LEFT) < 0.01],
-  ["metal-fuzzy?fuzz=1", "nothing is reflected that you could recognise", (now, was) => below(now.shapes(LEFT) / was.shapes(LEFT), 0.8)],
+  ["metal?fuzz=0.2", "it blurs", (now, was) => below(now.steepest(MIRROR) / was.steepest(MIRROR), 0.6)],
+  ["metal?depth=2", "turns black", (now, was) => now.mean(isBlack, MIRROR) > 0.3 && was.mean(isBlack, MIRROR) < 0.01],
+  ["metal-fuzzy?fuzz=1", "nothing is reflected that you could recognise", (now, was) => below(now.steepest(MIRROR) / was.steepest(MIRROR), 0.7)],
   ["metal-fuzzy?fuzz=0", "the right panel is the left one", (now, _, usual) => below(now.difference(usual.get("metal")), 2)],
-  ["glass-schlick?index=2.4", "become bright", (now, was) => now.light(GLASS_RIM) - was.light(GLASS_RIM)],
-  ["glass-refract?index=1.1", "turns upright", (now, was) => [now, was].map((picture) => picture.mean(isSky, GLASS_TOP) - picture.mean(isSky, GLASS_FLOOR))],
-  ["hollow-glass?index=1", "bright rings are left", (now) => [0.2, 0.25, 0.3, 0.35, 0.38, 0.4, 0.42, 0.44, 0.46, 0.48, 0.5, 0.52, 0.55].map((r) => now.light([0.21 - r * 0.28 - 0.003, 0.5, 0.21 - r * 0.28 + 0.003, 0.52]))],
-  ["fov-wide?vfov=120", "no longer reach the edges", (now, was) => [0, 8].map((y) => [now.at(160, y), was.at(160, y)])],
-  ["fov-narrow?vfov=5", "where they touch", (now) => [now.at(60, 135), now.at(420, 135), now.at(240, 5)]],
-  ["view-close?vfov=8", "the blue ball alone fills most", (now) => now.mean(([r, g, b]) => b > 1.3 * r)],
+  ["glass-schlick?index=2.4", "it reflects more of the sky", (now, was) => now.mean(([, , b]) => b, GLASS_TOP) > 1.5 * was.mean(([, , b]) => b, GLASS_TOP)],
+  ["glass-refract?index=1.1", "almost only sky", (now) => now.mean(isSky, [0.05, 0.3, 0.3, 0.58]) > 0.95],
+  ["glass-refract?index=1.1", "a patch of ground in its lower half", (now) => isGround(now.at(99, 181))],
+  ["glass-refract?index=1.1", "strip of ground along its upper rim", (now) => now.mean(isGround, [0.1, 0.2, 0.14, 0.26]) > 0.02],
+  ["hollow-glass?index=1", "bright rings are left", (now) => {
+    // Ground has no blue.
+    const [inner, between, outer, outside] = [0.7, 0.72, 0.77, 0.81].map((y) => now.mean(([, , b]) => b, [0.12, y, 0.18, y + 0.008]));
+    return (inner > 2 * between && outer > 2 * between && outside < 10) || [inner, between, outer, outside];
+  }],
+  ["fov-wide?vfov=120", "no longer reach the edges", (now, was) => isSky(now.at(48, 8)) && !isSky(now.at(160, 135)) && was.at(48, 8)[0] < 30],
+  ["fov-narrow?vfov=5", "where they touch", (now) => now.at(60, 135)[2] > 80 && now.at(60, 135)[0] < 30 && now.at(420, 135)[0] > 80 && now.at(420, 135)[2] < 30],
+  ["view-close?vfov=8", "the blue ball alone fills most", (now, was) => now.mean(isBlue) > 0.7 && was.mean(isBlue) < 0.5],
   ["defocus?defocus=0", "the second panel is the first", (now, _, usual) => below(now.difference(usual.get("view-close")), 2)],
-  ["defocus?defocus=20", "only the blue ball is left", (now, was) => [now.shapes(all), was.shapes(all), now.shapes([0.4, 0.2, 0.6, 0.8]), was.shapes([0.4, 0.2, 0.6, 0.8])]],
-  ["defocus?focus=2.9", "focus on the hollow ball", (now, was) => [now.shapes([0, 0.3, 0.4, 1]), was.shapes([0, 0.3, 0.4, 1])]],
-  ["book?defocus=0", "the front of the crowd is sharp", (now, was) => [now.shapes([0, 0.8, 1, 1]), was.shapes([0, 0.8, 1, 1])]],
-  ["book?defocus=0", "a pinhole camera", (now, was) => [now.shapes([0, 0.8, 1, 1]), was.shapes([0, 0.8, 1, 1])]],
-  ["book?depth=2", "lose most of what they show", (now, was) => [now.light([0.4, 0.2, 0.6, 0.6]), was.light([0.4, 0.2, 0.6, 0.6])]],
+  ["defocus?defocus=20", "the other two balls blur twice as much", (now, was) => below(now.steepest(BALL_EDGE) / was.steepest(BALL_EDGE), 0.8)],
+  ["defocus?focus=2.9", "focus on the hollow ball", (now, was) => now.steepest(ARC) / was.steepest(ARC) > 1.5],
+  ["book?defocus=0", "the front of the crowd is sharp", (now, was) => now.difference(was, FRONT) / now.difference(was, FOCUS) > 1.2],
+  ["book?defocus=0", "a pinhole camera", (now, was) => now.difference(was, FRONT) / now.difference(was, FOCUS) > 1.2],
+  ["book?depth=2", "lose most of what they show", (now, was) => below(now.light(FOCUS) / was.light(FOCUS), 0.8)],
 ];
