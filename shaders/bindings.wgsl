@@ -7,15 +7,15 @@
 @group(0) @binding(3) var<storage, read> records: array<ShadingRecord>;
 @group(0) @binding(4) var<storage, read> nodes: array<vec4u>;
 
-@group(1) @binding(0) var<uniform> order: Dispatch;
+@group(1) @binding(0) var<uniform> dispatch: Dispatch;
 @group(1) @binding(1) var<storage, read> blocks: array<Block>;
 @group(1) @binding(2) var<storage, read_write> film: array<atomic<u32>>;
 @group(1) @binding(3) var<storage, read_write> counters: Counters;
 
-@group(2) @binding(0) var<storage, read_write> words: array<u32>;
+@group(2) @binding(0) var<storage, read_write> scratch: array<u32>;
 
 fn load_words(base: u32) -> vec3u {
-    return vec3u(words[base], words[base + 1u], words[base + 2u]);
+    return vec3u(scratch[base], scratch[base + 1u], scratch[base + 2u]);
 }
 
 fn load_vector(base: u32) -> vec3f {
@@ -23,9 +23,9 @@ fn load_vector(base: u32) -> vec3f {
 }
 
 fn store_words(base: u32, v: vec3u) {
-    words[base] = v.x;
-    words[base + 1u] = v.y;
-    words[base + 2u] = v.z;
+    scratch[base] = v.x;
+    scratch[base + 1u] = v.y;
+    scratch[base + 2u] = v.z;
 }
 
 fn store_vector(base: u32, v: vec3f) {
@@ -37,6 +37,19 @@ fn sphere_at(number: u32) -> vec4f {
         return job.few_spheres[number];
     }
     return spheres[number];
+}
+
+// Counts that are known when the kernel is compiled let its loops be unrolled.
+fn opaque_count() -> u32 {
+    return select(job.opaque_count, OPAQUE_COUNT, FEW_SPHERES);
+}
+
+fn two_root_count() -> u32 {
+    return select(job.two_root_count, TWO_ROOT_COUNT, FEW_SPHERES);
+}
+
+fn anchored_count() -> u32 {
+    return select(job.anchored_count, ANCHORED_COUNT, FEW_ANCHORED);
 }
 
 fn anchored_at(number: u32) -> AnchoredSphere {
@@ -53,10 +66,10 @@ fn rank_of(number: u32) -> u32 {
 
 // Adds the path's sums to its pixel of the film.
 fn add_to_film(path: Path) {
-    let row = (path.pixel >> 16u) - order.first_row;
+    let row = (path.pixel >> 16u) - dispatch.first_row;
     // A recorded path has a film of its own.
     let within = select(row * job.width + (path.pixel & 0xFFFFu), 0u, RECORD);
-    let pixel = path.half * order.row_count * job.width + within;
+    let pixel = path.half * dispatch.row_count * job.width + within;
     add_wide(6u * pixel, path.sums.x);
     add_wide(6u * pixel + 2u, path.sums.y);
     add_wide(6u * pixel + 4u, path.sums.z);

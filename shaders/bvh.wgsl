@@ -129,7 +129,7 @@ fn traverse(ray: Ray, found: Nearest) -> Nearest {
     var nearest = found;
     // The sphere that the ray starts on. Only glass has another root for a ray inside.
     var start = ray.left;
-    if ray.inside < job.opaque_count + job.two_root_count && sphere_at(ray.inside).w >= 0.0 {
+    if ray.inside < job.opaque_count + job.two_root_count && !has_one_root(sphere_at(ray.inside)) {
         start = ray.inside;
         let key = chord_end(ray, sphere_at(start));
         // At a tie, spheres of the hierarchy come before the anchored ones, which were tested before.
@@ -145,7 +145,7 @@ fn traverse(ray: Ray, found: Nearest) -> Nearest {
     ray_is_cut = true;
     // The `break` ends this loop before its limit, because no node is visited twice.
     for (var visits = 0u; visits < job.node_count; visits++) {
-        turns += 1u;
+        iterations += 1u;
         let bit = firstLeadingBit(group.y);
         let slot = (bit - 24u) ^ slope.octant;
         let number = group.x + countOneBits(group.y & ((1u << slot) - 1u));
@@ -157,9 +157,9 @@ fn traverse(ray: Ray, found: Nearest) -> Nearest {
         let limit = bitcast<f32>(nearest.key);
         let hits = hits_of(number, slope, limit);
         var left = hits.bits & ~NODE_HITS;
-        // Terminates, because each turn clears one of 24 bits.
+        // Terminates, because each iteration clears one of 24 bits.
         for (; left != 0u; left &= left - 1u) {
-            turns += 1u;
+            iterations += 1u;
             let sphere = hits.first_sphere + firstTrailingBit(left);
             nearest = take_in_any_order(nearest, signed_root(ray, sphere_at(sphere), sphere, start), sphere);
         }

@@ -26,14 +26,9 @@ fn normalized(v: vec3f) -> vec3f {
     return v * inverseSqrt(dot3(v, v));
 }
 
-// Converts the upper 24 bits to a float in [0, 1).
-fn unit_float(u: u32) -> f32 {
-    return f32(u >> 8u) * UNIT_FLOAT_SCALE;
-}
-
-fn sine_of_quarter(x: f32) -> f32 {
-    let y = x * x;
-    return fma(y, fma(y, fma(y, fma(y, SINE_4, SINE_3), SINE_2), SINE_1), SINE_0) * x;
+// Rounds a radiance in units of the film to the nearest integer, ties to even.
+fn fixed_point(x: f32) -> u32 {
+    return u32(round(min(x, FIXED_POINT_MAX)));
 }
 
 // Sine and cosine of an angle in turns, 0 <= u < 1.
@@ -43,7 +38,12 @@ fn sin_cos_turns(u: f32) -> vec2f {
     return vec2f(-copysign(sine_of_quarter(0.25 - abs(q)), x), sine_of_quarter(q));
 }
 
-// Rounds a radiance in units of the film to the nearest integer, ties to even.
-fn fixed_point(x: f32) -> u32 {
-    return u32(round(min(x, FIXED_POINT_MAX)));
+// Converts the upper 24 bits to a float in [0, 1).
+fn unit_float(u: u32) -> f32 {
+    return f32(u >> 8u) * UNIT_FLOAT_SCALE;
+}
+
+fn sine_of_quarter(x: f32) -> f32 {
+    let y = x * x;
+    return fma(y, fma(y, fma(y, fma(y, SINE_4, SINE_3), SINE_2), SINE_1), SINE_0) * x;
 }

@@ -1,9 +1,10 @@
-// How a surface scatters a ray, into the direction `along d + across n + weight u`. (Book 1, sections 9 to 11.)
+// How a surface scatters a ray, into the direction `along d + across n + |weight| u`. (Book 1, sections 9 to 11.) The twin
+// has a table of the three factors.
 //
 // Twin: src/render_cpu/material.rs
 
-struct Surface {
-    // Length of the unit vector's part; a negative sign (also on 0) marks a reflection.
+struct Material {
+    // Weight of the unit vector; a negative sign (also on 0) marks a reflection.
     weight: f32,
     // Refraction index; 0 if not glass.
     refraction_index: f32,
@@ -13,13 +14,26 @@ struct Surface {
     f0: f32,
 }
 
-// Extracts the material of a shading record.
-fn surface_of(record: ShadingRecord) -> Surface {
-    return Surface(record.weight, record.refraction_index, record.inverse_index, record.f0);
+// Metal and glass.
+fn reflects(material: Material) -> bool {
+    return (bitcast<u32>(material.weight) >> 31u) != 0u;
 }
 
-// The result of scattering; the direction is not normalised.
-struct Scatter {
+fn is_lambertian(material: Material) -> bool {
+    return material.weight > 0.0;
+}
+
+fn is_glass(material: Material) -> bool {
+    return material.refraction_index > 0.0;
+}
+
+// Extracts the material of a shading record.
+fn material_of(record: ShadingRecord) -> Material {
+    return Material(record.weight, record.refraction_index, record.inverse_index, record.f0);
+}
+
+// A scattered ray; the direction is not normalised.
+struct Scattered {
     direction: vec3f,
     refracts: bool,
     is_metal: bool,
@@ -45,16 +59,16 @@ fn incidence_of_sine2(squared_sine: f32) -> Incidence {
     return Incidence(sqrt(1.0 - sine2), sine2);
 }
 
-// Scatters at any surface. `front` is true if the ray comes from outside; `coin` is uniform in [0, 1).
+// Scatters at any surface. `front_face` is true if the ray comes from outside; `coin` is uniform in [0, 1).
 fn scatter(
-    surface: Surface,
+    material: Material,
     direction: vec3f,
     normal: vec3f,
     incidence: Incidence,
-    front: bool,
+    front_face: bool,
     unit: vec3f,
     coin: f32,
-) -> Scatter {
+) -> Scattered {
     let cosine = incidence.cosine;
     var along = 0.0;
     var across = 1.0;
@@ -62,35 +76,34 @@ fn scatter(
     var refracts = false;
     var ratio = 1.0;
     if METAL || GLASS {
-        is_metal = (bitcast<u32>(surface.weight) >> 31u) != 0u;
+        is_metal = reflects(material);
         along = select(0.0, 1.0, is_metal);
         across = select(1.0, cosine + cosine, is_metal);
     }
     if GLASS {
-        let is_glass = surface.refraction_index > 0.0;
-        ratio = select(surface.refraction_index, surface.inverse_index, front);
+        is_metal = is_metal && !is_glass(material);
+        ratio = select(material.refraction_index, material.inverse_index, front_face);
         // Squared sine of the refraction angle: above 1, Snell's law has no solution.
         let refracted_sine2 = ratio * ratio * incidence.sine2;
-        refracts = is_glass;
+        refracts = is_glass(material);
         if DIELECTRIC_LAWS != LAWS_REFRACT_ONLY {
             refracts = refracts && refracted_sine2 <= 1.0;
         }
         if DIELECTRIC_LAWS == LAWS_SCHLICK {
-            refracts = refracts && coin >= reflectance(cosine, surface.f0);
+            refracts = refracts && coin >= reflectance(cosine, material.f0);
         }
         let inner_cosine = sqrt(abs(1.0 - refracted_sine2));
         along = select(along, ratio, refracts);
         across = select(across, fma(ratio, cosine, -inner_cosine), refracts);
-        is_metal = is_metal && !is_glass;
     }
-    var sent = normal * across;
+    var scattered = normal * across;
     if METAL || GLASS {
-        sent = mul_add3(direction, along, sent);
+        scattered = mul_add3(direction, along, scattered);
     }
     if LAMBERTIAN || FUZZ {
-        sent = mul_add3(unit, abs(surface.weight), sent);
+        scattered = mul_add3(unit, abs(material.weight), scattered);
     }
-    return Scatter(sent, refracts, is_metal, ratio);
+    return Scattered(scattered, refracts, is_metal, ratio);
 }
 
 // The refracted direction, not normalised, from the part of the incoming direction `across` the normal. This form keeps

@@ -1,10 +1,10 @@
-// The path loop. A thread traces blocks of a pixel's samples. When a path ends, it starts the next sample immediately, so
-// no thread waits for the longest path beside it. Where paths can be long, a thread that has finished its block takes the
-// next one of the workgroup's tile, so none waits for the longest pixel either.
+// The path loop: intersect, shade, spawn the next ray. A thread traces blocks of a pixel's samples. When a path ends, it
+// starts the next sample immediately, so no thread waits for the longest path beside it. Where paths can be long, a thread
+// that has finished its block takes the next one of the workgroup's tile, so no thread idles on the slowest pixel.
 //
 // Twin: src/render_cpu/path
 
-// State that persists from ray to ray must also be put aside: see aside.wgsl.
+// State that persists from ray to ray must also be suspended: see suspend.wgsl.
 struct Path {
     ray: Ray,
     throughput: vec3f,
@@ -17,7 +17,7 @@ struct Path {
     // Samples left in the block, including the current one.
     remaining: u32,
     // Number of the block among those of the tile; NONE before the first.
-    item: u32,
+    block: u32,
     // Key of the Sobol sampler.
     key: u32,
     // x | y << 16
@@ -36,81 +36,81 @@ struct Tile {
     size: vec2u,
 }
 
-// What a thread has traced.
+// Counts of a thread's work.
 struct Traced {
     rays: u32,
     rejected: u32,
     // Samples whose sums are in the film.
     finished: u32,
-    // 1 if a path was put aside.
+    // 1 if a path was suspended.
     unfinished: u32,
     // 1 if not even one ray could be traced to its end.
     stuck: u32,
 }
 
-// Turns of all loops of this thread so far.
-var<private> turns: u32;
+// Iterations of all loops of this thread so far.
+var<private> iterations: u32;
 
-// Whether the current ray's traversal ended early: some drivers end loops that have many turns.
+// Whether the current ray's traversal ended early: some drivers end loops after many iterations.
 var<private> ray_is_cut: bool;
 
 // The number of the next block of the tile that no thread has begun.
-var<workgroup> queue: atomic<u32>;
+var<workgroup> next_block: atomic<u32>;
 
-// Traces blocks of the dispatch in a tile, or continues them. After the number of loop turns that the dispatch allows,
-// the path is put aside in the words from `aside` on.
-fn trace(tile: Tile, thread: u32, aside: u32) -> Traced {
+// Traces blocks of the dispatch in a tile, or continues them. After the number of iterations that the dispatch allows,
+// the path is suspended to the scratch words from `suspended` on.
+fn trace(tile: Tile, thread: u32, suspended: u32) -> Traced {
     let pixels = tile.size.x * tile.size.y;
     var path: Path;
     path.absorbed = true;
     path.remaining = 1u;
-    path.item = NONE;
+    path.block = NONE;
     var traced: Traced;
-    if ASIDE && order.resumes > 0u {
-        take_up(&path, tile, aside);
+    if SUSPENDS && dispatch.resumes > 0u {
+        resume(&path, tile, suspended);
     }
-    let list_turns = turns_over_lists();
+    let list_iterations = iterations_over_lists();
     var is_done = path.remaining == 0u;
-    turns = 0u;
+    iterations = 0u;
     ray_is_cut = false;
-    // Terminates, because each turn increases `turns`: it ends after at most `turn_limit` turns, which include the
-    // turns of inner loops except those of the last ray.
-    while !is_done && turns < order.turn_limit {
-        turns += 1u;
+    // Terminates, because `iterations` increases: it ends after at most `iteration_limit` iterations, which include those
+    // of inner loops, except for the last ray's.
+    while !is_done && iterations < dispatch.iteration_limit {
+        iterations += 1u;
         var nearest = nothing();
         if !path.absorbed {
             if RAYS {
-                turns += list_turns;
+                iterations += list_iterations;
                 nearest = intersect(path.ray);
             }
             if HIERARCHY && ray_is_cut {
                 break;
             }
             if RECORD {
-                record_ray(words[RECORD_HEAD_RAY_COUNT] + traced.rays, path, nearest);
+                record_ray(scratch[RECORD_HEAD_RAY_COUNT] + traced.rays, path, nearest);
             }
             traced.rays++;
         }
         let record = records[select(nearest.sphere, 0u, nearest.sphere == NONE)];
         var point: SurfacePoint;
-        let ended = collect(&path, nearest, record, &point);
+        let ended = shade(&path, nearest, record, &point);
         if ended && path.remaining == 0u {
-            if path.item != NONE {
+            if path.block != NONE {
                 add_to_film(path);
-                traced.finished += blocks[path.item / pixels].count;
+                traced.finished += blocks[path.block / pixels].count;
             }
-            path.item = next_item(path.item, thread, pixels);
-            if path.item >= pixels * order.block_count {
+            path.block = take_block(path.block, thread, pixels);
+            if path.block >= pixels * dispatch.block_count {
                 is_done = true;
                 break;
             }
             enter_block(&path, tile, 0u);
         }
-        send_on(&path, ended, nearest.sphere, record, point);
+        spawn_ray(&path, ended, nearest.sphere, record, point);
     }
     if !is_done {
-        if ASIDE {
-            put_aside(path, aside);
+        if SUSPENDS {
+            suspend(path, suspended);
         }
         traced.unfinished = 1u;
         traced.stuck = select(0u, 1u, ray_is_cut && traced.rays == 0u);
@@ -119,49 +119,40 @@ fn trace(tile: Tile, thread: u32, aside: u32) -> Traced {
     return traced;
 }
 
-// The block after `item` that the thread traces: the next of the tile, or the next of the thread's own pixel.
-fn next_item(item: u32, thread: u32, pixels: u32) -> u32 {
-    if ASIDE {
-        return atomicAdd(&queue, 1u);
+// The block that the thread traces after `block`: the next of the tile, or the next of the thread's own pixel.
+fn take_block(block: u32, thread: u32, pixels: u32) -> u32 {
+    if SUSPENDS {
+        return atomicAdd(&next_block, 1u);
     }
-    return select(item + pixels, thread, item == NONE);
+    return select(block + pixels, thread, block == NONE);
 }
 
-// Turns of one ray's loops over lists: see `intersect`. Loops over a hierarchy count their own turns.
-fn turns_over_lists() -> u32 {
-    let anchored_count = select(job.anchored_count, ANCHORED_COUNT, FEW_ANCHORED);
+// Iterations of one ray's loops over lists: see `intersect`. Loops over a hierarchy count their own iterations.
+fn iterations_over_lists() -> u32 {
     if HIERARCHY && SURFACE == SURFACE_EXACT {
-        return anchored_count;
+        return anchored_count();
     }
-    let opaque_count = select(job.opaque_count, OPAQUE_COUNT, FEW_SPHERES);
-    let two_root_count = select(job.two_root_count, TWO_ROOT_COUNT, FEW_SPHERES);
-    return opaque_count + two_root_count + anchored_count;
+    return opaque_count() + two_root_count() + anchored_count();
 }
 
 // Finds the nearest hit of a ray.
 fn intersect(ray: Ray) -> Nearest {
-    var nearest = nothing();
-    // Counts that are known when the kernel is compiled let its loops be unrolled.
-    let opaque_count = select(job.opaque_count, OPAQUE_COUNT, FEW_SPHERES);
-    let two_root_count = select(job.two_root_count, TWO_ROOT_COUNT, FEW_SPHERES);
-    let listed = opaque_count + two_root_count;
     if SURFACE != SURFACE_EXACT {
-        let t_min = select(0.0, BOOK_T_MIN, SURFACE == SURFACE_BOOK);
-        for (var i = 0u; i < listed; i++) {
-            nearest = take(nearest, book_root(ray, sphere_at(i), t_min), i);
-        }
-        return nearest;
+        return book_nearest(ray);
     }
+    var nearest = nothing();
+    let opaque = opaque_count();
+    let listed = opaque + two_root_count();
     if HIERARCHY {
         // A hit of the ground rules out the boxes behind it.
         nearest = take_anchored(ray, nearest, listed);
         return traverse(ray, nearest);
     }
-    for (var i = 0u; i < opaque_count; i++) {
+    for (var i = 0u; i < opaque; i++) {
         nearest = take(nearest, near_root(ray, sphere_at(i), i), i);
     }
     if TWO_ROOT {
-        for (var i = opaque_count; i < listed; i++) {
+        for (var i = opaque; i < listed; i++) {
             nearest = take(nearest, nearest_root(ray, sphere_at(i), i), i);
         }
     }
@@ -172,7 +163,7 @@ fn intersect(ray: Ray) -> Nearest {
 fn take_anchored(ray: Ray, found: Nearest, first: u32) -> Nearest {
     var nearest = found;
     if ANCHORED {
-        let count = select(job.anchored_count, ANCHORED_COUNT, FEW_ANCHORED);
+        let count = anchored_count();
         for (var i = 0u; i < count; i++) {
             nearest = take(nearest, anchored_root(ray, anchored_at(i), first + i), first + i);
         }
@@ -185,7 +176,7 @@ fn hit_point(ray: Ray, t: f32, record: ShadingRecord) -> SurfacePoint {
     var point: SurfacePoint;
     if SURFACE != SURFACE_EXACT {
         point = book_point(ray, t, record.reference, record.curvature);
-    } else if ANCHORED && record.anchoring > 0.0 {
+    } else if ANCHORED && is_anchored(record) {
         point = anchored_surface_point(ray, t, record.reference, record.inward, record.curvature);
     } else if SPECKS {
         point = speck_surface_point(ray, t, record.reference, record.curvature, record.radius);
@@ -195,36 +186,38 @@ fn hit_point(ray: Ray, t: f32, record: ShadingRecord) -> SurfacePoint {
     return point;
 }
 
-// Splits x | y << 16 into column and row.
-fn pixel_position(pixel: u32) -> vec2f {
-    return vec2f(f32(pixel & 0xFFFFu), f32(pixel >> 16u));
-}
-
-// Adds the arriving light, ends the path, and starts the next sample if the path has ended. Returns whether it has. If
-// the ray continues, sets `point` to the hit point.
-fn collect(
+// Shades a hit: adds light, ends the path, and starts the next sample if it has ended. Returns whether it has. If the path
+// continues, sets `point` to the hit point.
+fn shade(
     path: ptr<function, Path>,
     nearest: Nearest,
     record: ShadingRecord,
     point: ptr<function, SurfacePoint>,
 ) -> bool {
+    // End paths that miss, that were absorbed, or that have all their rays.
     let miss = nearest.sphere == NONE;
     var ended = miss || (*path).absorbed || (*path).bounce == job.max_depth - 1u;
-    var lit = miss && !(*path).absorbed;
+
+    // Find the hit point of the others.
     if !ended || SHADING == SHADING_NORMALS {
         *point = hit_point((*path).ray, bitcast<f32>(nearest.key), record);
     }
+
+    // Add the light of the sky where the ray misses, or what the stage shows in its place.
+    var lit = miss && !(*path).absorbed;
     if SHADING != SHADING_PATH {
         lit = !(*path).absorbed;
         ended = true;
     }
     if lit {
-        var light = shade_miss((*path).ray.direction.y);
+        var light = sky_light((*path).ray.direction.y);
         if SHADING != SHADING_PATH {
-            light = shade_hit((*path).pixel, miss, (*point).outward, light);
+            light = shown_colour((*path).pixel, miss, light, (*point).outward);
         }
         add_radiance(path, light);
     }
+
+    // Start the next sample where a path has ended.
     (*path).bounce = select((*path).bounce + 1u, 0u, ended);
     if ended {
         (*path).counter += (*path).step;
@@ -234,22 +227,8 @@ fn collect(
 }
 
 // The sky's radiance in a direction with this y component, in units of the film.
-fn shade_miss(height: f32) -> vec3f {
+fn sky_light(height: f32) -> vec3f {
     return max(vec3f(0.0), fma(job.sky_slope, vec3f(height), job.sky_middle));
-}
-
-// A ray's contribution in stages that show something simpler than light; `light` if the ray misses.
-fn shade_hit(pixel: u32, miss: bool, outward: vec3f, light: vec3f) -> vec3f {
-    if SHADING == SHADING_IMAGE_GRADIENT {
-        // A single column or row has no far end, so its value is 0.
-        return vec3f(pixel_position(pixel) / max(job.camera.size - 1.0, vec2f(1.0)), 0.0) * FIXED_POINT_SCALE;
-    }
-    var shown = vec3f(FIXED_POINT_SCALE, 0.0, 0.0);
-    if SHADING == SHADING_NORMALS {
-        let half = vec3f(0.5 * FIXED_POINT_SCALE);
-        shown = max(vec3f(0.0), fma(outward, half, half));
-    }
-    return select(shown, light, miss);
 }
 
 // Adds the radiance of a finished path to the sums, or counts it as rejected if it is not a number that can be added.
@@ -267,8 +246,8 @@ fn add_radiance(path: ptr<function, Path>, light: vec3f) {
 // Starts sample `place` of the path's block.
 fn enter_block(path: ptr<function, Path>, tile: Tile, place: u32) {
     let pixels = tile.size.x * tile.size.y;
-    let block = blocks[(*path).item / pixels];
-    let number = (*path).item % pixels;
+    let block = blocks[(*path).block / pixels];
+    let number = (*path).block % pixels;
     let position = tile.corner + vec2u(number % tile.size.x, number / tile.size.x);
     (*path).pixel = position.x | (position.y << 16u);
     (*path).corner = screen(job.camera, vec2f(position));
@@ -280,42 +259,37 @@ fn enter_block(path: ptr<function, Path>, tile: Tile, place: u32) {
     (*path).key = sampler_key(job.seed, block.half, (*path).pixel);
 }
 
-// Where a ray meets what it has hit.
-struct Arrival {
+// Where a ray meets the surface that it has hit, and from which side.
+struct SurfaceInteraction {
     position: vec3f,
     // Unit normal on the side that the ray came from.
     normal: vec3f,
     // Cosine between the ray's direction and the outward normal.
     outward_cosine: f32,
     // Whether the ray came from outside.
-    front: bool,
+    front_face: bool,
 }
 
-// Finds where and from which side a ray meets what it has hit.
-fn arrive(ray: Ray, hit: u32, record: ShadingRecord, point: SurfacePoint) -> Arrival {
+// Finds where and from which side a ray meets the surface that it has hit.
+fn surface_interaction(ray: Ray, hit: u32, record: ShadingRecord, point: SurfacePoint) -> SurfaceInteraction {
     let outward_cosine = dot3(ray.direction, point.outward);
-    var front = outward_cosine < 0.0;
+    var front_face = outward_cosine < 0.0;
     if SURFACE == SURFACE_EXACT {
-        front = front && ray.inside != hit;
+        front_face = front_face && ray.inside != hit;
     }
     if CAVITY {
-        front = front && record.anchoring < 2.0;
+        front_face = front_face && !is_cavity(record);
     }
-    return Arrival(point.position, select(-point.outward, point.outward, front), outward_cosine, front);
+    let normal = select(-point.outward, point.outward, front_face);
+    return SurfaceInteraction(point.position, normal, outward_cosine, front_face);
 }
 
-// The reflectance of what was hit.
+// The reflectance of the surface that was hit.
 fn albedo_of(record: ShadingRecord, pixel: u32) -> vec3f {
     if REFLECTANCE_STRIPS {
         return vec3f(strip_reflectance(pixel));
     }
     return record.albedo;
-}
-
-// The reflectance of the picture strip that contains a pixel: 10, 30, 50, 70 or 90 %.
-fn strip_reflectance(pixel: u32) -> f32 {
-    let strip = (pixel_position(pixel).x + 0.5) * (5.0 / job.camera.size.x) - 0.5;
-    return fma(round(max(0.0, strip)), 0.2, 0.1);
 }
 
 // The numbers for a path's next ray.
@@ -339,21 +313,21 @@ fn has_lens() -> bool {
     return LENS && job.camera.tau > 0.0;
 }
 
-// Continues the path from a surface, or starts a new one at the camera if it has ended. Neighbouring threads take both
-// branches, so common work is outside the branch: one set of numbers, one sine and cosine, one normalisation.
-fn send_on(path: ptr<function, Path>, ended: bool, hit: u32, record: ShadingRecord, point: SurfacePoint) {
+// Spawns the next ray: from a surface, or from the camera if the path has ended. Neighbouring threads take both branches,
+// so common work is outside the branch: one set of numbers, one sine and cosine, one normalisation.
+fn spawn_ray(path: ptr<function, Path>, ended: bool, hit: u32, record: ShadingRecord, point: SurfacePoint) {
     let drawn = draw(*path);
-    var sent: Ray;
+    var ray: Ray;
     if ended {
         let camera = generate_camera_ray((*path).corner, drawn);
-        sent = Ray(camera.origin, camera.direction, select(NONE, EYE, EYE_ON_SURFACE), NONE);
+        ray = Ray(camera.origin, camera.direction, select(NONE, EYE, EYE_ON_SURFACE), NONE);
         (*path).throughput = vec3f(1.0);
         (*path).absorbed = false;
     } else {
-        sent = scatter_path(path, drawn, hit, record, point);
+        ray = scatter_path(path, drawn, hit, record, point);
     }
-    sent.direction = normalized(sent.direction);
-    (*path).ray = sent;
+    ray.direction = normalized(ray.direction);
+    (*path).ray = ray;
 }
 
 // The camera ray of a new path.
@@ -369,7 +343,7 @@ fn generate_camera_ray(corner: vec2f, drawn: Drawn) -> CameraRay {
     return pinhole_ray(job.camera, corner, jitter);
 }
 
-// Scatters at the hit. The direction is not normalised.
+// Scatters the path at the surface that it has hit. The direction is not normalised.
 fn scatter_path(
     path: ptr<function, Path>,
     drawn: Drawn,
@@ -377,57 +351,77 @@ fn scatter_path(
     record: ShadingRecord,
     point: SurfacePoint,
 ) -> Ray {
-    let direction = (*path).ray.direction;
-    let arrival = arrive((*path).ray, hit, record, point);
-    let front = arrival.front;
-    let normal = arrival.normal;
-    let rho = sqrt(drawn.pair.x * (1.0 - drawn.pair.x));
-    let across = (rho + rho) * drawn.sine_cosine.yx;
-    let unit = vec3f(across.x, 1.0 - (drawn.pair.x + drawn.pair.x), across.y);
-    let incidence = incidence_of(arrival.outward_cosine);
-    let surface = surface_of(record);
-    let coin = drawn.pair.x;
-    var bounced: Scatter;
-    if STEEP_GLASS {
-        bounced = scatter_steeply(path, surface, hit, normal, incidence, front, unit, coin);
-    } else {
-        bounced = scatter(surface, direction, normal, incidence, front, unit, coin);
-    }
-    var sent = bounced.direction;
-    if HEMISPHERE && surface.weight > 0.0 {
-        sent = hemisphere(normal, unit);
-    }
-    if dot3(sent, sent) < NEAR_ZERO {
-        sent = normal;
-    }
-    // Metal absorbs a fuzzy reflection that points into the surface.
-    (*path).absorbed = METAL && bounced.is_metal && !(dot3(sent, normal) > 0.0);
+    let ray = (*path).ray;
+    let interaction = surface_interaction(ray, hit, record, point);
+    let front_face = interaction.front_face;
+    let normal = interaction.normal;
+    let material = material_of(record);
     (*path).throughput *= albedo_of(record, (*path).pixel);
-    let inward = front == bounced.refracts;
-    return Ray(arrival.position, sent, select(hit, NONE, inward), select(NONE, hit, inward));
+
+    // A uniform unit vector, with a vertical pole.
+    let coin = drawn.pair.x;
+    let rho = sqrt(coin * (1.0 - coin));
+    let across = (rho + rho) * drawn.sine_cosine.yx;
+    let unit = vec3f(across.x, 1.0 - (coin + coin), across.y);
+
+    let incidence = incidence_of(interaction.outward_cosine);
+    var scattered: Scattered;
+    if STEEP_GLASS {
+        scattered = scatter_steeply(path, material, hit, normal, incidence, front_face, unit, coin);
+    } else {
+        scattered = scatter(material, ray.direction, normal, incidence, front_face, unit, coin);
+    }
+    var direction = diffuse_direction(material, scattered.direction, normal, unit);
+    if dot3(direction, direction) < NEAR_ZERO {
+        direction = normal;
+    }
+
+    // Metal absorbs a fuzzy reflection that points into the surface.
+    (*path).absorbed = METAL && scattered.is_metal && !(dot3(direction, normal) > 0.0);
+
+    // Remember the sphere that the ray leaves or is inside of.
+    let continues_inside = front_face == scattered.refracts;
+    let left = select(hit, NONE, continues_inside);
+    let inside = select(NONE, hit, continues_inside);
+    return Ray(interaction.position, direction, left, inside);
 }
 
 // Scatters where the rounded cosine does not give the angle of incidence precisely enough. A ray inside glass arrives
 // at the same angle at which it started. The angle is stored, so that total reflection persists.
 fn scatter_steeply(
     path: ptr<function, Path>,
-    surface: Surface,
+    material: Material,
     hit: u32,
     normal: vec3f,
     rough: Incidence,
-    front: bool,
+    front_face: bool,
     unit: vec3f,
     coin: f32,
-) -> Scatter {
+) -> Scattered {
     let direction = (*path).ray.direction;
     let across = mul_add3(normal, rough.cosine, direction);
-    let is_known = (*path).ray.inside == hit && surface.refraction_index > 0.0;
+    let is_known = (*path).ray.inside == hit && is_glass(material);
     let incidence = incidence_of_sine2(select(dot3(across, across), (*path).sine2, is_known));
-    var bounced = scatter(surface, direction, normal, incidence, front, unit, coin);
+    var scattered = scatter(material, direction, normal, incidence, front_face, unit, coin);
     (*path).sine2 = incidence.sine2;
-    if bounced.refracts {
-        bounced.direction = refracted(across, normal, bounced.ratio, incidence.sine2);
-        (*path).sine2 *= bounced.ratio * bounced.ratio;
+    if scattered.refracts {
+        scattered.direction = refracted(across, normal, scattered.ratio, incidence.sine2);
+        (*path).sine2 *= scattered.ratio * scattered.ratio;
     }
-    return bounced;
+    return scattered;
+}
+
+// Splits x | y << 16 into column and row.
+fn pixel_position(pixel: u32) -> vec2f {
+    return vec2f(f32(pixel & 0xFFFFu), f32(pixel >> 16u));
+}
+
+// Whether the sphere of a record is anchored.
+fn is_anchored(record: ShadingRecord) -> bool {
+    return record.anchoring > 0.0;
+}
+
+// Whether the sphere of a record encloses every ray.
+fn is_cavity(record: ShadingRecord) -> bool {
+    return record.anchoring > 1.0;
 }

@@ -13,21 +13,23 @@ fn path_trace(
     @builtin(local_invocation_index) thread: u32,
 ) {
     let number = group.x + group.y * groups.x;
-    let tile = order.first_tile + number;
+    let tile = dispatch.first_tile + number;
     let tile_height = WORKGROUP_SIZE / job.tile_width;
     let tiles_across = (job.width + job.tile_width - 1u) / job.tile_width;
     let corner = vec2u((tile % tiles_across) * job.tile_width, (tile / tiles_across) * tile_height);
-    let size = min(vec2u(job.tile_width, tile_height), vec2u(job.width, order.row_count) - corner);
-    let first_aside = order.first_aside + number * WORKGROUP_SIZE * ASIDE_WORDS;
-    if ASIDE {
-        if thread == 0u && order.resumes > 0u {
-            atomicStore(&queue, words[first_aside + ASIDE_QUEUE]);
+    let size = min(vec2u(job.tile_width, tile_height), vec2u(job.width, dispatch.row_count) - corner);
+    let first_suspended = dispatch.first_suspended + number * WORKGROUP_SIZE * SUSPENDED_WORDS;
+    if SUSPENDS {
+        if thread == 0u && dispatch.resumes > 0u {
+            atomicStore(&next_block, scratch[first_suspended + SUSPENDED_NEXT_BLOCK]);
         }
         workgroupBarrier();
     }
-    if number < order.tile_count && (ASIDE || thread < size.x * size.y) {
+    if number < dispatch.tile_count && (SUSPENDS || thread < size.x * size.y) {
         let traced = trace(
-            Tile(vec2u(corner.x, corner.y + order.first_row), size), thread, first_aside + thread * ASIDE_WORDS,
+            Tile(vec2u(corner.x, corner.y + dispatch.first_row), size),
+            thread,
+            first_suspended + thread * SUSPENDED_WORDS,
         );
         atomicAdd(&group_rays, traced.rays);
         atomicAdd(&group_finished, traced.finished);
@@ -57,8 +59,8 @@ fn path_trace(
         if unfinished > 0u {
             atomicAdd(&counters.dispatch.unfinished, unfinished);
             atomicAdd(&counters.dispatch.stuck, atomicLoad(&group_stuck));
-            if ASIDE {
-                words[first_aside + ASIDE_QUEUE] = atomicLoad(&queue);
+            if SUSPENDS {
+                scratch[first_suspended + SUSPENDED_NEXT_BLOCK] = atomicLoad(&next_block);
             }
         }
     }

@@ -18,15 +18,15 @@ fn resolve(
     @builtin(local_invocation_index) thread: u32,
 ) {
     let index = (group.x + group.y * groups.x) * WORKGROUP_SIZE + thread;
-    if index >= job.width * order.row_count {
+    if index >= job.width * dispatch.row_count {
         return;
     }
-    let row = order.first_row + index / job.width;
+    let row = dispatch.first_row + index / job.width;
     let lower = row >= job.height / 2u;
-    let gamma = order.transfer == TRANSFER_GAMMA2 || (order.transfer == TRANSFER_LINEAR_ABOVE_GAMMA2 && lower);
-    let count = max(f32(order.sample_count), 1.0);
+    let gamma = dispatch.transfer == TRANSFER_GAMMA2 || (dispatch.transfer == TRANSFER_LINEAR_ABOVE_GAMMA2 && lower);
+    let count = max(f32(dispatch.sample_count), 1.0);
     let red = to_byte(mean_of(film_sum(6u * index), count), gamma);
     let green = to_byte(mean_of(film_sum(6u * index + 2u), count), gamma);
     let blue = to_byte(mean_of(film_sum(6u * index + 4u), count), gamma);
-    words[index] = red | (green << 8u) | (blue << 16u) | 0xFF000000u;
+    scratch[index] = red | (green << 8u) | (blue << 16u) | 0xFF000000u;
 }

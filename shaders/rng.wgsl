@@ -42,20 +42,15 @@ fn pascal(first: u32) -> u32 {
     return u ^ ((u & 0x55555555u) << 1u);
 }
 
-// A pair of Sobol coordinates for the reversed sample index `counter`.
-fn sobol_pair(counter: u32, stream: u32) -> vec2u {
-    let u = laine_karras(counter, mix32(stream));
+// A pair of Sobol coordinates from a shuffled index.
+fn sobol_pair(index: u32, rearrangement: u32) -> vec2u {
+    let u = index ^ (index * rearrangement);
     return vec2u(u, pascal(u));
 }
 
 // Moves `key` to the dimensions of `bounce`.
 fn stream_of(key: u32, bounce: u32) -> u32 {
     return key + bounce * GOLDEN_RATIO;
-}
-
-// Moves `key` to the second pair of dimensions of `bounce`.
-fn lens_stream_of(key: u32, bounce: u32) -> u32 {
-    return stream_of(key, bounce + LENS_BLOCK);
 }
 
 // The key that separates the Sobol scramblings of pixels, halves and seeds.
@@ -71,12 +66,16 @@ fn sampler_key(seed: u32, half: u32, pixel: u32) -> u32 {
     return 0u;
 }
 
-// Two pairs of numbers for a path's next ray; the second pair differs only `with_lens`.
+// Two pairs of numbers for a path's next ray; the second pair matters only `with_lens`, for camera rays.
 fn numbers(seed: u32, pixel: u32, counter: u32, key: u32, bounce: u32, with_lens: bool) -> vec4u {
     if SAMPLER == SAMPLER_SOBOL {
-        let first = sobol_pair(counter, stream_of(key, bounce));
+        var rearrangement = select(0u, FIRST_REARRANGEMENT, bounce == 1u);
+        rearrangement = select(rearrangement, SECOND_REARRANGEMENT, bounce == 2u);
+        let stream = select(stream_of(key, bounce), key, bounce <= 2u);
+        let index = laine_karras(counter, mix32(stream));
+        let first = sobol_pair(index, rearrangement);
         if with_lens {
-            return vec4u(first, sobol_pair(counter, lens_stream_of(key, bounce)));
+            return vec4u(first, sobol_pair(index, SECOND_REARRANGEMENT));
         }
         return first.xyxy;
     }

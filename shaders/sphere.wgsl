@@ -73,12 +73,16 @@ fn nearest_root(ray: Ray, sphere: vec4f, number: u32) -> u32 {
     return smaller_key(near, select(-1.0, far, (meets || enters) && !leaves));
 }
 
-// Distance to a sphere of a hierarchy, unless the ray starts on it. Its squared radius is negative if only the nearer
-// root counts.
+// Whether only the nearer root of a sphere of a hierarchy counts: its squared radius is negative.
+fn has_one_root(sphere: vec4f) -> bool {
+    return sphere.w < 0.0;
+}
+
+// Distance to a sphere of a hierarchy, unless the ray starts on it.
 fn signed_root(ray: Ray, sphere: vec4f, number: u32, start: u32) -> u32 {
     let hd = chord(ray, vec4f(sphere.xyz, abs(sphere.w)));
     let s = sqrt(max(hd.y, 0.0));
-    let key = select(bitcast<u32>(hd.x - s), smaller_key(hd.x - s, hd.x + s), sphere.w >= 0.0);
+    let key = select(smaller_key(hd.x - s, hd.x + s), bitcast<u32>(hd.x - s), has_one_root(sphere));
     return select(MISS_KEY, key, hd.y >= 0.0 && number != start);
 }
 

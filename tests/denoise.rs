@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod noisy_scenes;
 mod program_common;
 
 use program_common::{ends, film, json_file, outcome, weekender};
@@ -12,7 +13,7 @@ use weekender::denoise::{self, Denoised};
 use weekender::film::{Film, key};
 use weekender::job::output::read_description;
 use weekender::job::recipe::Recipe;
-use weekender::{CpuOptions, CpuRenderer, Renderer};
+use weekender::{CpuOptions, CpuRenderer, Renderer, scene_file};
 
 /// Renders samples of a picture with the CPU.
 fn render(recipe: &Recipe, samples: u64) -> Film {
@@ -85,6 +86,78 @@ fn rendered_pictures_gain_and_the_estimate_holds() {
     assert!(within >= 30, "{within} of {total} estimates are within two standard deviations");
 }
 
+/// Noise is told from texture relative to the noise, however dark the picture is.
+#[test]
+fn dark_scenes_gain_like_bright_ones() {
+    let gain = |factor: f64| {
+        let film = render(&noisy_scenes::dimmed(factor), 64);
+        let error = denoise::of_film(&film).unwrap().error;
+        error.raw_mse / error.mse
+    };
+    let (bright, dark) = (gain(1.0), gain(1e-4));
+    assert!(bright > 4.0 && (dark / bright - 1.0).abs() < 0.05, "{bright}, {dark}");
+}
+
+/// Where filtering loses more than it gains, the raw picture stays, with a reason.
+#[test]
+fn texture_of_single_pixels_is_not_erased() {
+    let reference = render(&sized(noisy_scenes::dots(), [200, 112], 1000), 512);
+    for (seed, samples) in (0..3).flat_map(|seed| [4, 8, 16, 64].map(|samples| (seed, samples))) {
+        let film = render(&sized(noisy_scenes::dots(), [200, 112], seed), samples);
+        let raw = mse(&film, &reference);
+        match denoise::of_film(&film) {
+            Ok(denoised) => {
+                let gain = raw / mse(&denoised.film, &reference);
+                assert!(gain > 0.97, "seed {seed}, {samples} samples: {gain}");
+            }
+            Err(reason) => assert!(reason.to_string().contains("would grow"), "{reason}"),
+        }
+    }
+}
+
+/// If few paths find light, no error is stated that is far too low, and the mean stays.
+#[test]
+fn rare_light_is_neither_overlooked_nor_lost() {
+    let size = [48, 27];
+    let reference = render(&sized(noisy_scenes::cage(1.4), size, 1000), 1 << 15);
+    let total = |film: &Film| film.exact_means().flatten().sum::<f64>();
+    let (mut raw, mut kept) = (0.0, 0.0);
+    for seed in 0..40 {
+        let film = render(&sized(noisy_scenes::cage(1.4), size, seed), 16);
+        let Ok(halves) = denoise::Halves::of(&film) else { continue };
+        let denoised = denoise::denoise(halves, &AtomicBool::new(false)).unwrap();
+        let (truth, stated) = (mse(&denoised.film, &reference), denoised.error.upper_rmse());
+        assert!(truth.sqrt() < 3.0 * stated.max(1e-3), "seed {seed}: {} and {stated}", truth.sqrt());
+        (raw, kept) = (raw + total(&film), kept + total(&denoised.film));
+    }
+    assert!((kept / raw - 1.0).abs() < 0.1, "the mean falls from {raw} to {kept}");
+}
+
+/// Sobol points of a half with more samples have less than their share of the variance.
+#[test]
+fn errors_of_odd_numbers_of_samples_hold() {
+    let metals = |seed| sized(Recipe::find("metals").unwrap(), [200, 112], seed);
+    let reference = render(&metals(1000), 1024);
+    for (samples, seeds) in [(3, 8), (5, 6), (7, 6)] {
+        let (mut stated, mut truth) = (0.0, 0.0);
+        for seed in 0..seeds {
+            let film = render(&metals(seed), samples);
+            (stated, truth) = (stated + film.error().unwrap().rmse.powi(2), truth + mse(&film, &reference));
+        }
+        assert!((stated / truth - 1.0).abs() < 0.04, "{samples} samples: {}", stated / truth);
+    }
+}
+
+#[test]
+fn tiny_pictures_are_doubted() {
+    for size in [[1, 1], [2, 2], [4, 3]] {
+        let film = render(&sized(Recipe::find("book").unwrap(), size, 1), 16);
+        let error = film.error().unwrap();
+        let doubt = film.doubt(&error).unwrap();
+        assert!(doubt.contains("100 pixels") && error.rmse_deviation > 0.1 * error.rmse, "{doubt}");
+    }
+}
+
 /// The figures of docs/benchmarks.md: `cargo test --release --test denoise -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes"]
@@ -152,6 +225,16 @@ fn the_program_writes_denoised_pictures_and_leaves_the_film_alone() {
         none.is_none() && error.unwrap() <= 0.003 && denoised < raw,
         "{denoised} and {raw} samples, {error:?}"
     );
+
+    // A target is met by the picture that is written.
+    let toml = scene_file::to_toml(&noisy_scenes::dots());
+    std::fs::write(at("dots.toml"), toml).unwrap();
+    let (_, messages) =
+        run("--scene dots.toml --noise-target 0.025 --json figures.json --out dots.png --denoise");
+    let json = json_file(&at("figures.json"));
+    let written = json["denoised_rmse_estimate"].as_f64();
+    assert!(written.or(json["rmse_estimate"].as_f64()).unwrap() <= 0.025, "{json}");
+    assert_eq!(written.is_none(), messages.contains("not denoised"), "{messages}");
 
     let (_, messages) = run("--stage metal --out small.png --samples 2 --denoise --size 4x3");
     assert!(messages.contains("the picture is not denoised"), "{messages}");

@@ -15,18 +15,20 @@ export function nextBlock(done, wanted, most) {
   return { half: 0, counter: reversed(done), step: (2 ** 32 / count) >>> 0, count };
 }
 
-const TARGET_MS = 20;
-
 // The number of paths that a dispatch of a kernel should have, learnt from measured times.
+//
+// Twin: `Budget` in src/render_gpu/schedule.rs
 export class Budget {
-  paths = 4096;
+  paths = data.constants.first_paths;
 
   learn(paths, took) {
-    const ratio = TARGET_MS / Math.max(took, 1e-6);
+    const { dispatch_ms, growth_limit, budget_limits } = data.constants;
+    const ratio = dispatch_ms / Math.max(took, 1e-6);
     // A dispatch far below the budget measures the cost of starting one.
     const least = 2 * paths < this.paths ? this.paths : this.paths / 2;
-    const found = ratio < 0.5 ? Math.min(this.paths, paths) / 2 : clamped(paths * ratio, least, 4 * this.paths);
-    this.paths = clamped(found, 64, 1e12);
+    const most = growth_limit * this.paths;
+    const found = ratio < 0.5 ? Math.min(this.paths, paths) / 2 : clamped(paths * ratio, least, most);
+    this.paths = clamped(found, ...budget_limits);
   }
 }
 
@@ -43,9 +45,11 @@ class Gpu {
     this.kernels = new Map();
     const names = `${info.vendor} ${info.architecture} ${info.device} ${info.description}`;
     const isSoftware = info.isFallbackAdapter || /llvmpipe|softpipe|swiftshader|swrast|basic render/i.test(names);
-    // Drivers in software may end loops after some turns, and count those of all threads that run in step.
-    this.turnLimit = data.constants.turn_limit / (isSoftware ? clamped(info.subgroupMaxSize ?? 8, 8, 64) : 1);
-    this.busyThreads = isSoftware ? 4096 : Infinity;
+    // Software drivers may end loops after some iterations, and count those of all threads that run in step.
+    const { iteration_limit, software_threads_in_step, software_busy_threads } = data.constants;
+    const inStep = isSoftware ? clamped(info.subgroupMaxSize ?? 0, ...software_threads_in_step) : 1;
+    this.iterationLimit = iteration_limit / inStep;
+    this.busyThreads = isSoftware ? software_busy_threads : Infinity;
     const group = (...types) =>
       device.createBindGroupLayout({
         entries: types.map((type, binding) => ({ binding, visibility: GPUShaderStage.COMPUTE, buffer: { type } })),
@@ -84,16 +88,16 @@ class Film {
   static async start(gpu, stage, settings, scale) {
     const size = [stage.width, stage.height].map((pixels) => Math.ceil(pixels / scale));
     const { buffers, overrides } = inputs(stage, settings, size);
-    // Paths that may be longer than a driver's loops are put aside: see shaders/aside.wgsl.
-    const turns = settings.depth * (1 + stage.turns_over_lists) + 1;
-    const whole = Math.floor((gpu.turnLimit - 1) / turns);
-    const isAside = overrides.HIERARCHY === 1 || whole < 1;
+    // Paths that may be longer than a driver's loops are suspended: see shaders/suspend.wgsl.
+    const iterations = settings.depth * (1 + stage.iterations_over_lists) + 1;
+    const whole = Math.floor((gpu.iterationLimit - 1) / iterations);
+    const suspends = overrides.HIERARCHY === 1 || whole < 1;
     const [kernel, resolver] = await Promise.all([
-      gpu.kernel("path_trace", { ...overrides, ASIDE: +isAside }),
+      gpu.kernel("path_trace", { ...overrides, SUSPENDS: +suspends }),
       gpu.kernel("resolve", {}),
     ]);
-    const most = Math.min(stage.block_limit, isAside ? Infinity : whole);
-    return new Film(gpu, stage, size, scale, { kernel, resolver, isAside, most }, buffers);
+    const most = Math.min(stage.block_limit, suspends ? Infinity : whole);
+    return new Film(gpu, stage, size, scale, { kernel, resolver, suspends, most }, buffers);
   }
 
   constructor(gpu, stage, [width, height], scale, plan, inputs) {
@@ -104,23 +108,23 @@ class Film {
     this.tilesAcross = Math.ceil(width / this.tileWidth);
     this.tiles = this.tilesAcross * Math.ceil(height / this.tileHeight);
     const { UNIFORM, STORAGE, COPY_SRC, COPY_DST, MAP_READ } = GPUBufferUsage;
-    const threads = this.isAside ? Math.min(this.tiles * constants.workgroup_size, 1 << 18) : 1;
-    this.tileLimit = this.isAside ? threads / constants.workgroup_size : this.tiles;
-    this.order = this.buffer("order", records.Dispatch.stride, UNIFORM | COPY_DST);
+    const threads = this.suspends ? Math.min(this.tiles * constants.workgroup_size, constants.thread_limit) : 1;
+    this.tileLimit = this.suspends ? threads / constants.workgroup_size : this.tiles;
+    this.parameters = this.buffer("dispatch", records.Dispatch.stride, UNIFORM | COPY_DST);
     this.blocks = this.buffer("blocks", records.Block.stride, STORAGE | COPY_DST);
     this.counters = this.buffer("counters", records.Counters.stride, STORAGE | COPY_SRC | COPY_DST);
     this.receipt = this.buffer("receipt", records.DispatchCounters.stride, MAP_READ | COPY_DST);
     this.picture = this.buffer("picture", 4 * width * height, STORAGE | COPY_SRC);
     this.shown = this.buffer("shown", 4 * width * height, MAP_READ | COPY_DST);
     const sums = this.buffer("film", constants.pixel_size * width * height, STORAGE);
-    const aside = this.buffer("aside", constants.aside_size * threads, STORAGE);
+    const suspended = this.buffer("suspended paths", constants.suspended_size * threads, STORAGE);
     const scene = inputs.map((bytes, i) => {
       const buffer = this.buffer("scene", bytes.length, (i === 0 ? UNIFORM : STORAGE) | COPY_DST);
       gpu.device.queue.writeBuffer(buffer, 0, bytes);
       return buffer;
     });
-    const shared = [gpu.bind(0, scene), gpu.bind(1, [this.order, this.blocks, sums, this.counters])];
-    this.tracing = [...shared, gpu.bind(2, [aside])];
+    const shared = [gpu.bind(0, scene), gpu.bind(1, [this.parameters, this.blocks, sums, this.counters])];
+    this.tracing = [...shared, gpu.bind(2, [suspended])];
     this.resolving = [...shared, gpu.bind(2, [this.picture])];
   }
 
@@ -135,11 +139,11 @@ class Film {
   }
 
   // Runs a kernel and returns a copy of what it left in `from`, from byte `offset` on.
-  async run({ pipeline }, groups, count, order, [from, offset, to]) {
+  async run({ pipeline }, groups, count, parameters, [from, offset, to]) {
     const { queue } = this.gpu.device;
     const words = new DataView(new ArrayBuffer(data.records.Dispatch.stride));
-    writeWords(words, 0, "Dispatch", { row_count: this.height, ...order });
-    queue.writeBuffer(this.order, 0, words);
+    writeWords(words, 0, "Dispatch", { row_count: this.height, ...parameters });
+    queue.writeBuffer(this.parameters, 0, words);
     const encoder = this.gpu.device.createCommandEncoder();
     encoder.clearBuffer(this.counters, data.records.Counters.dispatch, data.records.DispatchCounters.stride);
     const pass = encoder.beginComputePass();
@@ -161,7 +165,7 @@ class Film {
     return nextBlock(this.done, wanted, Math.min(this.most, this.kernel.budget.paths / threads));
   }
 
-  // Traces a block in some tiles from `first` on, repeating the dispatch until no path is put aside. Returns their
+  // Traces a block in some tiles from `first` on, repeating the dispatch until no path is suspended. Returns their
   // number.
   async trace(first, block) {
     const { workgroup_size } = data.constants;
@@ -172,20 +176,20 @@ class Film {
     writeWords(words, 0, "Block", block);
     this.gpu.device.queue.writeBuffer(this.blocks, 0, words);
     const [paths, samples] = [count * workgroup_size * block.count, this.pixelsWithin(first, count) * block.count];
-    const order = { first_tile: first, tile_count: count, block_count: 1, turn_limit: this.gpu.turnLimit };
+    const parameters = { first_tile: first, tile_count: count, block_count: 1, iteration_limit: this.gpu.iterationLimit };
     const { DispatchCounters, Counters } = data.records;
     const from = [this.counters, Counters.dispatch, this.receipt];
     let finished = 0;
     for (let resumes = 0, unfinished = 1; unfinished > 0; resumes = 1) {
       const begin = performance.now();
-      const bytes = new DataView(await this.run(this.kernel, this.tracing, count, { ...order, resumes }, from));
+      const bytes = new DataView(await this.run(this.kernel, this.tracing, count, { ...parameters, resumes }, from));
       const took = performance.now() - begin;
       const counter = (name) => bytes.getUint32(DispatchCounters[name], true);
       const now = counter("finished") + counter("finished_high") * 2 ** 32;
       this.kernel.budget.learn(Math.max(1, (paths * now) / samples), took);
       this.seconds += took / 1000;
       finished += now;
-      unfinished = this.isAside ? counter("unfinished") : 0;
+      unfinished = this.suspends ? counter("unfinished") : 0;
       if (counter("stuck") > 0) throw new Error("The driver's loops are too short for this scene.");
     }
     if (finished !== samples) throw new Error(`The device added only ${finished} of ${samples} samples.`);
@@ -202,9 +206,9 @@ class Film {
   }
 
   async image() {
-    const order = { sample_count: this.done, transfer: this.stage.transfer };
+    const parameters = { sample_count: this.done, transfer: this.stage.transfer };
     const count = Math.ceil((this.width * this.height) / data.constants.workgroup_size);
-    const bytes = await this.run(this.resolver, this.resolving, count, order, [this.picture, 0, this.shown]);
+    const bytes = await this.run(this.resolver, this.resolving, count, parameters, [this.picture, 0, this.shown]);
     return new ImageData(new Uint8ClampedArray(bytes, 0, 4 * this.width * this.height), this.width, this.height);
   }
 }

@@ -4,7 +4,7 @@ use crate::widths::{Body, COUNT, run, widths};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use weekender::render_cpu::lanes::{Lanes, Mask, Unsigned};
-use weekender::render_cpu::rng::{pcg4d, sobol_pair};
+use weekender::render_cpu::rng::{laine_karras, mix32, pcg4d, sobol_pair};
 
 /// A pair of Sobol coordinates for each of [`COUNT`] rays.
 struct Sobol;
@@ -15,7 +15,8 @@ impl Body for Sobol {
         let mut sum = l.splat_u(0);
         for first in (0..COUNT).step_by(L::WIDTH) {
             let counter = l.splat_u(divan::black_box(first as u32).reverse_bits());
-            let [u, v] = sobol_pair(l, counter, sum);
+            let index = laine_karras(l, counter, mix32(l, sum));
+            let [u, v] = sobol_pair(l, index, l.splat_u(2));
             sum = sum + (u ^ v);
         }
         sum.eq(l.splat_u(0)).bits()

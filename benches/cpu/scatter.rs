@@ -4,7 +4,7 @@ use crate::widths::{Body, COUNT, Vectors, run, widths};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use weekender::render_cpu::lanes::{Float, Lanes, Mask, V3};
-use weekender::render_cpu::material::{Surface, incidence_of, scatter};
+use weekender::render_cpu::material::{Material, incidence_of, scatter};
 use weekender::stages::DielectricLaws;
 
 /// Bounces of each ray: so many that loading it does not matter.
@@ -37,7 +37,7 @@ impl<const GLASS: bool> Body for Scatter<GLASS> {
             let (normal, kind) = self.normals.load(l, first);
             let is_glass = kind.lt(l.constant(if GLASS { 0.3 } else { 0.0 }));
             let index = is_glass.select(l.constant(1.5), zero);
-            let surface = Surface {
+            let material = Material {
                 weight: kind - l.constant(0.6),
                 refraction_index: index,
                 inverse_index: l.constant(1.0) / index,
@@ -51,7 +51,7 @@ impl<const GLASS: bool> Body for Scatter<GLASS> {
                 let laws = DielectricLaws::Schlick;
                 let found = scatter::<L, GLASS>(
                     l,
-                    &surface,
+                    &material,
                     laws,
                     direction,
                     normal,

@@ -17,11 +17,11 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 use weekender::backends::BackendChoice;
 use weekender::job::recipe::Recipe;
-use weekender::job::render::{RenderJob, RenderSettings, Renderer};
+use weekender::job::render::{Control, RenderJob, RenderSettings, Renderer};
 use weekender::kernel::parts;
 use weekender::numbers::statistics;
 use weekender::prepared::PreparedScene;
-use weekender::prepared::wide_bvh::WideBvh;
+use weekender::prepared::hierarchy::Hierarchy;
 use weekender::progressive::{Plan, Progressive, RenderRequest};
 use weekender::render_gpu::{GpuOptions, GpuRenderer};
 use weekender::stages::Shading;
@@ -111,16 +111,14 @@ fn median(values: &[f64]) -> f64 {
 
 fn hierarchy(scene: &str) -> anyhow::Result<()> {
     let job = job(scene, [64, 36, 8])?;
-    let prepared = PreparedScene::<f32>::new(&job);
-    let spheres: Vec<_> = prepared.spheres_of_hierarchy(&job).collect();
-    let count = spheres.len() as f64;
     let mut times = Vec::new();
     let mut size = 0.0;
     for _ in 0..5 {
-        let start = Instant::now();
-        let built = WideBvh::build(spheres.iter().copied(), prepared.origin);
-        times.push(start.elapsed().as_secs_f64() * 1e3);
-        size = size_of_val(&*built.rows()) as f64 / count + size_of::<u32>() as f64;
+        let prepared = PreparedScene::<f32>::wide(&job);
+        times.push(prepared.hierarchy_source.time().as_secs_f64() * 1e3);
+        if let Some(Hierarchy { wide: Some(wide), ranks, .. }) = &prepared.hierarchy {
+            size = size_of_val(&*wide.nodes) as f64 / ranks.len() as f64 + size_of::<u32>() as f64;
+        }
     }
     println!("| {scene} | {size:.1} | {:.2} |", median(&times));
     Ok(())
@@ -173,12 +171,12 @@ fn passes(arguments: &[String]) -> anyhow::Result<()> {
             for pass in 0..count {
                 let range = pass * samples..(pass + 1) * samples;
                 if stays == 1 {
-                    renderer.advance(&job, range, &mut film, &go_on)?;
+                    renderer.advance(&job, range, &mut film, &Control::deferring(&go_on))?;
                 } else {
                     renderer.accumulate(&job, range, &mut film, &go_on)?;
                 }
             }
-            renderer.collect(&mut film)?;
+            renderer.finish(&mut film)?;
             anyhow::ensure!(film.sample_count() == count * samples, "samples are missing");
             let report = renderer.report();
             films[stays] = report.films - before.films;

@@ -6,10 +6,10 @@ use std::rc::Rc;
 use weekender::film::PixelSum;
 use weekender::job::render::RenderJob;
 use weekender::kernel::sampling::SampleBlock;
-use weekender::kernel::{Features, GpuAside, GpuBlock, GpuCounters, GpuDispatch, WORKGROUP_SIZE};
+use weekender::kernel::{Features, GpuBlock, GpuCounters, GpuDispatch, GpuSuspendedPath, WORKGROUP_SIZE};
 use weekender::render_gpu::layout::tile_size;
 use weekender::render_gpu::shader_source::shared;
-use weekender::render_gpu::{Exported, SHARED_BLOCK, TURN_LIMIT};
+use weekender::render_gpu::{Exported, ITERATION_LIMIT, SHARED_BLOCK};
 use wgpu::{BufferUsages, PollType};
 
 const ENTRIES: &str = include_str!("mappings.wgsl");
@@ -125,7 +125,7 @@ impl GpuWay {
     fn new(way: Way, shared: &Rc<Shared>, job: &RenderJob, samples: u64) -> anyhow::Result<Self> {
         let (device, queue) = (&shared.device, &shared.queue);
         let exported = Exported::new(job);
-        let features = Features { aside: way == Way::SharedBlocks, ..exported.features };
+        let features = Features { suspends: way == Way::SharedBlocks, ..exported.features };
         let source = wgpu::ShaderSource::Wgsl(way.source()?.into());
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
         let overrides = features.overrides();
@@ -158,7 +158,7 @@ impl GpuWay {
         let order = GpuDispatch {
             tile_count: tiles,
             block_count: blocks.len() as u32,
-            turn_limit: TURN_LIMIT,
+            iteration_limit: ITERATION_LIMIT,
             row_count: height,
             ..GpuDispatch::default()
         };
@@ -172,7 +172,7 @@ impl GpuWay {
             .collect();
         let order = filled(bytemuck::bytes_of(&order), BufferUsages::UNIFORM);
         let blocks = filled(bytemuck::cast_slice(&blocks), BufferUsages::STORAGE);
-        let words = filled(&[0; size_of::<GpuAside>()], BufferUsages::STORAGE);
+        let words = filled(&[0; size_of::<GpuSuspendedPath>()], BufferUsages::STORAGE);
         let bound: [Vec<&wgpu::Buffer>; 3] = [
             job_buffers.iter().collect(),
             vec![&order, &blocks, &shared.film, &shared.counters],
@@ -299,7 +299,7 @@ impl Mapping for GpuWay {
         let counters: GpuCounters = bytemuck::pod_read_unaligned(counters);
         anyhow::ensure!(
             counters.dispatch.unfinished == 0,
-            "some paths were not finished, because a thread's loop has at most {TURN_LIMIT} turns; ask for fewer samples"
+            "some paths were not finished, because a thread's loop has at most {ITERATION_LIMIT} iterations; ask for fewer samples"
         );
         let film = sums.chunks_exact(24).map(|pixel| PixelSum(bytemuck::pod_read_unaligned(pixel))).collect();
         Ok(Traced { seconds, film, in_use: None })

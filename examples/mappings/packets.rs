@@ -18,7 +18,7 @@ use weekender::render_cpu::lanes::{
     Float, Instructions, Lanes, Lanes4, Lanes8, Lanes16, Mask, Scalar, Unsigned, V3, WideU, rows_of,
     unit_float,
 };
-use weekender::render_cpu::material::{incidence_of, scatter, surface_of};
+use weekender::render_cpu::material::{incidence_of, material_of, scatter};
 use weekender::render_cpu::rng::{numbers, sampler_key};
 use weekender::render_cpu::sphere::{Nearest, Rays, Spheres, near_root, nearest_root, surface_point};
 use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa};
@@ -215,11 +215,11 @@ impl Work {
 }
 
 /// The records of the hits.
-struct HitRecords<L: Lanes> {
+struct ShadingRecords<L: Lanes> {
     columns: [[L::F; GROUP]; RECORD_COLUMNS / GROUP],
 }
 
-impl<L: Lanes> Columns<L::Real> for HitRecords<L> {
+impl<L: Lanes> Columns<L::Real> for ShadingRecords<L> {
     type Number = L::F;
     type Vector = V3<L::F>;
 
@@ -235,7 +235,7 @@ impl<L: Lanes> Columns<L::Real> for HitRecords<L> {
 }
 
 #[inline(always)]
-fn hit_records<L: Lanes<Real = f32>>(l: L, scene: &BroadcastScene<f32>, hit: L::U) -> HitRecords<L> {
+fn hit_records<L: Lanes<Real = f32>>(l: L, scene: &BroadcastScene<f32>, hit: L::U) -> ShadingRecords<L> {
     let mut columns = [[l.constant(0.0); GROUP]; RECORD_COLUMNS / GROUP];
     if scene.prepared.records.len() <= L::PERMUTED_ROWS {
         for (column, number) in columns.iter_mut().flatten().enumerate() {
@@ -247,7 +247,7 @@ fn hit_records<L: Lanes<Real = f32>>(l: L, scene: &BroadcastScene<f32>, hit: L::
             *columns = l.gather(&rows, group);
         }
     }
-    HitRecords { columns }
+    ShadingRecords { columns }
 }
 
 #[inline(always)]
@@ -298,7 +298,7 @@ fn trace<L: Lanes<Real = f32>>(l: L, refill: bool, scene: &BroadcastScene<f32>, 
         }
         let new = l.mask(started);
         stream = new.select(key, stream + l.load_u(&scene.stream_stride));
-        let [drawn, _] = numbers(l, settings, pixel, counter, stream, false);
+        let [drawn, _] = numbers(l, settings, pixel, counter, key, stream, false);
         let [u0, u1] = [unit_float(l, drawn[0]), unit_float(l, drawn[1])];
 
         // The next rays: from the hits, or from the camera.
@@ -313,14 +313,14 @@ fn trace<L: Lanes<Real = f32>>(l: L, refill: bool, scene: &BroadcastScene<f32>, 
         let front = outward_cosine.lt(zero) & !rays.inside.eq(hit);
         let normal = point.outward.negate_where(l, !front);
         let incidence = incidence_of(l, outward_cosine);
-        let surface = surface_of(&record);
+        let material = material_of(&record);
         let laws = DielectricLaws::Schlick;
-        let bounced =
-            scatter::<L, true>(l, &surface, laws, rays.direction, normal, &incidence, front, unit, u0);
-        let inward = !(front ^ bounced.refracts);
+        let scattered =
+            scatter::<L, true>(l, &material, laws, rays.direction, normal, &incidence, front, unit, u0);
+        let inward = !(front ^ scattered.refracts);
         let camera = pinhole_ray(l, &scene.camera, corner, [u0, u1]);
-        let direction = new.select(camera.direction, bounced.direction);
-        let absorbed = bounced.is_metal & !zero.lt(direction.dot(normal)) & !new;
+        let direction = new.select(camera.direction, scattered.direction);
+        let absorbed = scattered.is_metal & !zero.lt(direction.dot(normal)) & !new;
         let direction = direction.scale(one / direction.dot(direction).sqrt());
         rays = Rays {
             origin: new.select(camera.origin, point.position),

@@ -1,10 +1,10 @@
 //! The window. The image refines while the user watches, and can be explored and edited meanwhile.
 //!
-//! `model` holds what the user has chosen, without widgets or drawing. Each panel is a function of the part of the
-//! model that it may change, and of `Facts`, which it shows and asks for [`Command`]s; so do menus, keys and the
-//! palette. Each asker of a background thread owns the slot in which its answers arrive. Only [`Window`] knows
-//! everything: it carries out the commands and decides what to render. The tracer runs on its own thread, and the
-//! window's thread never waits for it.
+//! `model` holds the user's choices, without widgets or drawing. Each panel is a function of the part of the model that
+//! it may change, and of a snapshot of the rest; whatever else it wants, it requests as a [`Command`], like menus, keys
+//! and the palette. Whoever asks a background thread owns the slot for its answers. Only [`Window`] knows everything: it
+//! carries out the commands and decides what to render. The tracer runs on its own thread, and the window's thread never
+//! waits for it.
 
 mod commands;
 mod dialogs;
@@ -23,14 +23,22 @@ pub use model::{Device, Dock, Document, Origin, Remembered, Show, Sizing, Source
 pub use window::Window;
 
 use crate::cli::{DrawWith, WindowOptions};
+use crate::job::render::panic_text;
 use crate::system::files::state_directory;
+use crate::system::foreign::Captured;
 use crate::system::interrupt::Interrupt;
+use crate::system::journal;
 use anyhow::{Result, anyhow, bail};
-use eframe::egui::{self, Rect, pos2, vec2};
+use eframe::egui::{self, Rect, Vec2, pos2, vec2};
+use std::ops::RangeInclusive;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 
-/// What the user can do when no window can be opened.
+/// Scale factors that a window can have.
+const SCALE_FACTORS: RangeInclusive<f64> = 0.1..=16.0;
+
+/// The remedy when no window can be opened.
 const REMEDY: &str = "add --batch to render to a file without a window, for example: \
                       weekender --batch --stage glass-schlick --out glass.png";
 
@@ -44,12 +52,15 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
             "there is no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set); {REMEDY}"
         );
     }
-    // winit panics at other values.
+    // winit panics at what is not a positive number. At 100 times its size, the window ends some window managers and the
+    // libraries of some displays.
     let factor = std::env::var("WINIT_X11_SCALE_FACTOR").unwrap_or_default();
-    let is_factor = |text: &str| text.parse().is_ok_and(|factor: f64| factor > 0.0 && factor.is_normal());
+    let is_factor = |text: &str| text.parse().is_ok_and(|factor: f64| SCALE_FACTORS.contains(&factor));
     if !factor.is_empty() && !factor.eq_ignore_ascii_case("randr") && !is_factor(&factor) {
         bail!(
-            "WINIT_X11_SCALE_FACTOR is {factor:?}; set it to a number above 0 with a point, such as 1.5, or to randr"
+            "WINIT_X11_SCALE_FACTOR is {factor:?}; set it to a number from {} to {} with a point, such as 1.5, or to randr",
+            SCALE_FACTORS.start(),
+            SCALE_FACTORS.end()
         );
     }
     let options = WindowOptions { state_directory: state_directory(), ..options };
@@ -65,8 +76,14 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
     for &renderer in renderers(options.draw_with) {
         let (native, options) = (native_options(renderer), options.clone());
         let (drawn, heeded) = (Arc::clone(&drawn), Arc::clone(&interrupt));
-        let create = Box::new(|context: &eframe::CreationContext<'_>| {
+        // Until the window is there, faults of the display are not the program's.
+        journal::expect_panics(true);
+        let captured = Captured::begin();
+        let create = Box::new(move |context: &eframe::CreationContext<'_>| {
+            drop(captured);
+            journal::expect_panics(false);
             bring_to_monitor(context);
+            fit_to_monitor(context);
             let mut window = Window::with(options, context.storage)?;
             (window.shell.interrupt, window.shell.dialogs.system.is_there) = (Some(heeded), true);
             // The first frame would have egui's own style otherwise.
@@ -75,7 +92,18 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
             let _ = drawn.set(context.egui_ctx.clone());
             Ok(Box::new(window) as Box<dyn eframe::App>)
         });
-        match eframe::run_native("weekender", native, create) {
+        let outcome = catch_unwind(AssertUnwindSafe(|| eframe::run_native("weekender", native, create)));
+        let is_opening = journal::expect_panics(false);
+        let outcome = match outcome {
+            Ok(outcome) => outcome,
+            Err(panic) if is_opening => bail!(
+                "the display {} cannot open a window: {}; use another display, or {REMEDY}",
+                display(),
+                panic_text(panic.as_ref())
+            ),
+            Err(panic) => resume_unwind(panic),
+        };
+        match outcome {
             Ok(()) if interrupt.is_set() => return Ok(interrupt.exit_code()),
             Ok(()) => return Ok(ExitCode::SUCCESS),
             // The window system's own message names places in its source code, and another renderer would not help.
@@ -103,6 +131,30 @@ fn bring_to_monitor(context: &eframe::CreationContext) {
     if let Some(monitor) = window.available_monitors().next().filter(|_| !is_on_one) {
         window.set_outer_position(monitor.position());
     }
+}
+
+/// Makes a window smaller that would not fit its monitor with its frame: the first one leaves room for a task bar, too.
+fn fit_to_monitor(context: &eframe::CreationContext) {
+    let Some(window) = context.winit_window() else { return };
+    let monitor = window.current_monitor().or_else(|| window.available_monitors().next());
+    let Some(monitor) = monitor.map(|monitor| monitor.size()) else { return };
+    let is_first = context.storage.and_then(|storage| storage.get_string("window")).is_none();
+    let (mut inside, scale) = (window.inner_size(), window.scale_factor() as f32);
+    let [size, monitor] = [inside, monitor].map(|size| vec2(size.width as f32, size.height as f32));
+    let fitting = fitting_size(size, monitor, scale, is_first);
+    if fitting != size {
+        (inside.width, inside.height) = (fitting.x as u32, fitting.y as u32);
+        let _ = window.request_inner_size(inside);
+    }
+}
+
+/// The size in pixels of the inside of a window that should have `size`, on a monitor where a point has `scale` pixels.
+fn fitting_size(size: Vec2, monitor: Vec2, scale: f32, is_first: bool) -> Vec2 {
+    /// Points of a usual frame with its title bar, and of a task bar.
+    const FRAME: Vec2 = vec2(4.0, 40.0);
+    const TASK_BAR: Vec2 = vec2(0.0, 48.0);
+    let around = if is_first { FRAME + TASK_BAR } else { FRAME };
+    size.min((monitor - scale * around).max(vec2(480.0, 320.0))).floor()
 }
 
 /// Whether enough of a window is on a monitor to find and move it.
@@ -176,13 +228,13 @@ mod tests {
         window(&format!("weekender {words} --device cpu")).snapshot()
     }
 
-    /// What draws a part of the window with the window's own style, which is dark.
+    /// A harness that draws a part of the window in the window's own dark style.
     pub(super) fn dressed<State>(size: [f32; 2]) -> HarnessBuilder<State> {
         Harness::<State>::builder().with_size(size).with_context_setup(toolkit::theme::install)
     }
 
     #[test]
-    fn a_window_whose_monitor_is_gone_is_brought_back() {
+    fn windows_of_missing_monitors_are_moved() {
         let rect = |x, y, width, height| Rect::from_min_size(pos2(x, y), vec2(width, height));
         let monitor = rect(0.0, 0.0, 1920.0, 1080.0);
         for (window, expected) in [
@@ -197,7 +249,22 @@ mod tests {
     }
 
     #[test]
-    fn the_window_is_drawn_by_what_is_wished_and_else_by_a_gpu_if_there_is_one() {
+    fn the_window_fits_its_monitor_with_its_frame() {
+        for (monitor, scale, is_first, expected) in [
+            ([1920.0, 1080.0], 1.0, true, [1280.0, 800.0]),
+            ([1280.0, 800.0], 1.0, true, [1276.0, 712.0]),
+            ([1366.0, 768.0], 1.0, true, [1280.0, 680.0]),
+            ([1366.0, 768.0], 1.0, false, [1280.0, 728.0]),
+            ([1280.0, 800.0], 2.0, true, [1272.0, 624.0]),
+            ([320.0, 200.0], 1.0, true, [480.0, 320.0]),
+        ] {
+            let found = fitting_size(vec2(1280.0, 800.0), monitor.into(), scale, is_first);
+            assert_eq!(<[f32; 2]>::from(found), expected, "{monitor:?} {scale} {is_first}");
+        }
+    }
+
+    #[test]
+    fn draws_with_the_requested_renderer_and_prefers_a_gpu() {
         use eframe::Renderer::{Glow, Wgpu};
         assert_eq!([DrawWith::Wgpu, DrawWith::Gl].map(renderers), [&[Wgpu], &[Glow]]);
         let has_gpu = model::device::adapter().is_ok_and(|adapter| !adapter.is_software);

@@ -32,7 +32,7 @@ pub enum BackendChoice {
 }
 
 impl BackendChoice {
-    /// The best choice for this machine: a GPU if there is one, otherwise the widest CPU kernel; always the CPU if any
+    /// The best choice for this machine: a GPU if one is available, otherwise the widest CPU kernel; always the CPU if any
     /// CPU option is set.
     pub fn auto(cpu: CpuOptions, gpu: GpuOptions) -> Self {
         let is_gpu = cpu == CpuOptions::default() && adapters().iter().any(AdapterInfo::is_fit);

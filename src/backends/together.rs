@@ -2,7 +2,9 @@
 
 use super::close;
 use crate::film::{Film, FilmError};
-use crate::job::render::{BackendInfo, KernelInfo, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
+use crate::job::render::{
+    BackendInfo, Control, Diagnostics, KernelInfo, Outcome, RenderError, RenderJob, Renderer, Stats,
+};
 use crate::system::threads::shared;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -25,13 +27,13 @@ struct Member {
 pub struct Together {
     members: Vec<Member>,
     messages: Vec<String>,
-    /// What failed members added to the last range.
+    /// Samples that failed members added to the current range.
     departed: Vec<(BackendInfo, u64)>,
 }
 
 /// The result of a member's work on a range.
 #[derive(Default)]
-struct Outcome {
+struct Share {
     film: Option<Film>,
     stats: Stats,
     error: Option<RenderError>,
@@ -117,34 +119,29 @@ impl Renderer for Together {
         })
     }
 
-    fn credits(&self, _: u64) -> Vec<(BackendInfo, u64)> {
-        let present = self.members.iter().map(|member| (member.renderer.info(), member.added));
-        present.chain(self.departed.iter().cloned()).collect()
-    }
-
     fn take_messages(&mut self) -> Vec<String> {
         let members = self.members.iter_mut().flat_map(|member| member.renderer.take_messages());
         self.messages.drain(..).chain(members).collect()
     }
 
-    /// Lists as left out what any member leaves out.
-    fn kernel(&self) -> KernelInfo {
-        let kernels: Vec<KernelInfo> = self.members.iter().map(|member| member.renderer.kernel()).collect();
+    /// Lists as left out the parts that any member leaves out.
+    fn diagnostics(&self) -> Diagnostics {
+        let members: Vec<Diagnostics> =
+            self.members.iter().map(|member| member.renderer.diagnostics()).collect();
+        let kernels = members.iter().map(|member| &member.kernel);
         let mut left_out = Vec::new();
-        for name in kernels.iter().flat_map(|kernel| &kernel.left_out) {
+        for name in kernels.clone().flat_map(|kernel| &kernel.left_out) {
             if !left_out.contains(name) {
                 left_out.push(*name);
             }
         }
-        KernelInfo {
-            about: kernels.iter().map(|kernel| kernel.about.as_str()).collect::<Vec<_>>().join(" | "),
+        let kernel = KernelInfo {
+            about: kernels.clone().map(|kernel| kernel.about.as_str()).collect::<Vec<_>>().join(" | "),
             left_out,
-            hierarchy_time: kernels.iter().map(|kernel| kernel.hierarchy_time).sum(),
-        }
-    }
-
-    fn tile_occupancy(&self) -> Option<TileOccupancy> {
-        self.members.iter().find_map(|member| member.renderer.tile_occupancy())
+            hierarchy_time: kernels.map(|kernel| kernel.hierarchy_time).sum(),
+        };
+        let tile_occupancy = members.into_iter().find_map(|member| member.tile_occupancy);
+        Diagnostics { kernel, tile_occupancy, ..Diagnostics::default() }
     }
 
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
@@ -159,13 +156,13 @@ impl Renderer for Together {
         self.leave_out(failed)
     }
 
-    fn accumulate(
+    fn advance(
         &mut self,
         job: &RenderJob,
         range: Range<u64>,
         film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
+        &Control { cancel, .. }: &Control,
+    ) -> Result<Outcome, RenderError> {
         let begin = Instant::now();
         if let Some(range) = film.samples().overlap(&range) {
             return Err(FilmError::Overlap { range }.into());
@@ -183,16 +180,16 @@ impl Renderer for Together {
             let speeds = self.members.iter().map(|member| member.samples_per_second).collect();
             pieces.get_mut().unwrap_or_else(PoisonError::into_inner).speeds = speeds;
             let members: Vec<_> = self.members.iter_mut().enumerate().collect();
-            let outcomes = shared(members, |(index, member)| work_off(member, index, job, &pieces, cancel));
+            let shares = shared(members, |(index, member)| work_off(member, index, job, &pieces, cancel));
             let mut failed = Vec::new();
-            for (index, outcome) in outcomes.into_iter().enumerate() {
-                let outcome = outcome.unwrap_or_else(|payload| {
+            for (index, share) in shares.into_iter().enumerate() {
+                let share = share.unwrap_or_else(|payload| {
                     let error = Some(RenderError::of_panic("a renderer", payload.as_ref()));
-                    Outcome { error, ..Outcome::default() }
+                    Share { error, ..Share::default() }
                 });
-                stats.add(&outcome.stats);
-                films.extend(outcome.film);
-                match outcome.error {
+                stats.add(&share.stats);
+                films.extend(share.film);
+                match share.error {
                     Some(RenderError::Cancelled) => return Err(RenderError::Cancelled),
                     Some(error) => failed.push((index, error)),
                     None => {}
@@ -208,61 +205,62 @@ impl Renderer for Together {
             film.merge(part)?;
         }
         stats.trace = begin.elapsed();
-        Ok(stats)
+        let present = self.members.iter().map(|member| (member.renderer.info(), member.added));
+        Ok(Outcome::Added { stats, credits: present.chain(self.departed.drain(..)).collect() })
     }
 }
 
-/// Takes pieces until none is left, and collects their samples.
+/// Takes pieces until none is left, and finishes their samples.
 fn work_off(
     member: &mut Member,
     index: usize,
     job: &RenderJob,
     pieces: &Mutex<Pieces>,
     cancel: &AtomicBool,
-) -> Outcome {
+) -> Share {
     let begin = Instant::now();
-    let mut outcome = Outcome::default();
+    let mut share = Share::default();
     let mut taken = Vec::new();
     let renderer = member.renderer.as_mut();
     let name = renderer.info().name;
-    while outcome.error.is_none() {
+    while share.error.is_none() {
         if cancel.load(Ordering::Relaxed) {
-            outcome.error = Some(RenderError::Cancelled);
-            return outcome;
+            share.error = Some(RenderError::Cancelled);
+            return share;
         }
         let piece = pieces.lock().unwrap_or_else(PoisonError::into_inner).take(index);
         let is_last = piece.is_none();
         if is_last && taken.is_empty() {
-            return outcome;
+            return share;
         }
-        let film = outcome.film.get_or_insert_with(|| job.new_film());
+        let film = share.film.get_or_insert_with(|| job.new_film());
         let work = || match piece {
             Some(piece) => {
                 taken.push(piece.clone());
-                renderer.advance(job, piece, film, cancel)
+                renderer.advance(job, piece, film, &Control::deferring(cancel)).map(|outcome| outcome.stats())
             }
-            None => renderer.collect(film),
+            None => renderer.finish(film),
         };
         // A panic leaves the film unchanged; samples not yet in it are left to the other members.
         match catch_unwind(AssertUnwindSafe(work)) {
-            Ok(Ok(stats)) => outcome.stats.add(&stats),
-            Ok(Err(error)) => outcome.error = Some(error),
-            Err(payload) => outcome.error = Some(RenderError::of_panic(name, payload.as_ref())),
+            Ok(Ok(stats)) => share.stats.add(&stats),
+            Ok(Err(error)) => share.error = Some(error),
+            Err(payload) => share.error = Some(RenderError::of_panic(name, payload.as_ref())),
         }
         if is_last {
             break;
         }
     }
-    if matches!(outcome.error, Some(RenderError::FilmLost { .. })) {
-        outcome.film = Some(job.new_film());
+    if matches!(share.error, Some(RenderError::FilmLost { .. })) {
+        share.film = Some(job.new_film());
     }
-    let Some(film) = &outcome.film else { return outcome };
+    let Some(film) = &share.film else { return share };
     // Samples that a member has not added to its film are left to the others.
     let is_lost = |piece: &Range<u64>| !piece.is_empty() && film.samples().overlap(piece).is_none();
     let lost: Vec<Range<u64>> = taken.into_iter().filter(is_lost).collect();
-    if outcome.error.is_none() && !lost.is_empty() {
+    if share.error.is_none() && !lost.is_empty() {
         let reason = "it did not add the samples that it was to trace".to_owned();
-        outcome.error = Some(RenderError::Backend { backend: name, reason });
+        share.error = Some(RenderError::Backend { backend: name, reason });
     }
     pieces.lock().unwrap_or_else(PoisonError::into_inner).left.extend(lost);
     let added = film.sample_count();
@@ -270,7 +268,7 @@ fn work_off(
     if added > 0 {
         member.samples_per_second = Some(added as f64 / begin.elapsed().as_secs_f64().max(1e-9));
     }
-    outcome
+    share
 }
 
 #[cfg(test)]

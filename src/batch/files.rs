@@ -118,7 +118,7 @@ impl Files {
     /// requested, the picture is that of the film, and a note says so.
     pub fn write(&self, film: &Film, status: &Status, mut say: impl FnMut(&Path)) -> Written {
         let (render, mut written) = (&self.render, Written::default());
-        let denoised = match render.plan.stop.is_denoised.then(|| denoise::of_film(film)) {
+        let denoised = match render.denoise.then(|| denoise::of_film(film)) {
             Some(Err(reason)) => {
                 written.notes.push(format!("the picture is not denoised: {reason}"));
                 None

@@ -219,6 +219,7 @@ fn broken_off(error: anyhow::Error, frame: u32, done: u32) -> Failure {
         return Failure::Run(error);
     }
     let done = counted(u64::from(done), "frame");
-    let context = format!("frame {frame} failed; {done} before it stay, and the same command continues");
+    let context =
+        format!("frame {frame} failed; {done} before it are kept; run the same command again to continue");
     Failure::BrokeOff(error.context(context))
 }

@@ -35,7 +35,7 @@ pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
     match options.films.as_slice() {
         [plan] if Plan::is_at(plan) => merge_parts(&Plan::load(plan).map_err(Failure::Input)?, options),
         films if films.iter().any(|film| Plan::is_at(film)) => refuse(
-            "a plan names its parts itself: merge it alone, then merge the result with the other files",
+            "a plan already names its parts: merge it alone, then merge the result with the other files",
         ),
         _ if options.check => refuse(
             "--check needs a plan: only a plan says which parts there should be; make one with `weekender plan`",

@@ -40,6 +40,7 @@ fn render_samples(plan: &Plan, index: usize, options: PartOptions) -> Result<Exi
         job: plan.job.clone(),
         stage: plan.stage(),
         plan: progressive::Plan { first_sample: start, ..super::Studio::plan(end) },
+        denoise: false,
         out: path.clone(),
         format: OutputFormat::Exr,
         checkpoint: Some(path.clone()),

@@ -108,7 +108,7 @@ mod tests {
     use super::*;
 
     use crate::film::checkpoint;
-    use crate::job::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+    use crate::job::render::{BackendInfo, Control, Outcome, RenderError, RenderJob, Renderer, Stats};
     use std::ops::Range;
     use std::sync::atomic::AtomicBool;
 
@@ -124,18 +124,18 @@ mod tests {
             Ok(())
         }
 
-        fn accumulate(
+        fn advance(
             &mut self,
             _: &RenderJob,
             samples: Range<u64>,
             film: &mut Film,
-            _: &AtomicBool,
-        ) -> Result<Stats, RenderError> {
+            _: &Control,
+        ) -> Result<Outcome, RenderError> {
             if samples.end > 4 {
                 return Err(RenderError::Backend { backend: "failing", reason: "it broke".to_owned() });
             }
             film.record(samples, 0)?;
-            Ok(Stats::default())
+            Ok(Stats::default().into())
         }
     }
 

@@ -17,7 +17,7 @@ pub struct Studio<'a> {
     interrupt: &'a Interrupt,
 }
 
-/// What happens during a render.
+/// Events during a render.
 pub enum Event<'a> {
     Warning(&'a str),
     /// A signal arrived, and the render will stop.

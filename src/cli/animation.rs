@@ -1,39 +1,18 @@
 //! Animations: `--frames` and `--turntable`.
 
 use super::check_paths;
-use super::render::RenderFlags;
+use super::render::{AnimationFlags, RenderFlags};
 use super::sources;
-use super::values::{ProgressChoice, parse_turn, range};
+use super::values::ProgressChoice;
 use crate::backends::BackendChoice;
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderJob;
-use crate::scene::animation::{CameraPath, FRAME_LIMIT, FrameNames, Turn};
+use crate::scene::animation::{CameraPath, FrameNames, Turn};
 use crate::stages::Stage;
 use crate::system::files::ShownPath;
 use anyhow::{Context, Result, bail};
-use clap::{ArgGroup, Args};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Animation", group = ArgGroup::new("moving").multiple(true).conflicts_with("sample_range"))]
-pub(super) struct AnimationFlags {
-    /// Render frames A to B - 1 of an animation to --out; the camera moves by --turntable or by the keyframes of the scene
-    /// file [default with --turntable: one turn]
-    #[arg(long, value_name = "A..B", value_parser = range(FRAME_LIMIT, "0..120"), group = "moving")]
-    frames: Option<Range<u32>>,
-    /// Let the camera circle around --look-at about --vup: the frames of a turn, or the degrees between two frames, such
-    /// as 1.5deg or -3deg [without a value: 120 frames]
-    #[arg(long, value_name = "FRAMES|DEGREES", value_parser = parse_turn, num_args = 0..=1,
-          require_equals = true, default_missing_value = "120", group = "moving")]
-    turntable: Option<Turn>,
-}
-
-impl AnimationFlags {
-    pub fn is_given(&self) -> bool {
-        self.frames.is_some() || self.turntable.is_some()
-    }
-}
 
 /// Options of `--batch --frames`.
 #[derive(Debug)]

@@ -30,7 +30,7 @@ use crate::job::recipe::Recipe;
 use crate::system::failure::{EXIT_CODES, Failure};
 use crate::system::shell::Shell;
 use anyhow::Result;
-use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::error::{ContextKind, ContextValue};
 use clap::parser::ValueSource;
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::{OsStr, OsString};
@@ -120,8 +120,8 @@ pub enum Command {
     Gallery(Box<GalleryOptions>),
     /// Find the mistake in a picture that your own program has rendered
     ///
-    /// Finds the stage of the book that the picture shows, and the likeliest mistake with what to change. The exit code
-    /// is 0 if the picture is right, 1 if there is a mistake and 2 if it could not be checked.
+    /// Finds the stage of the book that the picture shows, and the mistake with what to change. The exit code is 0 if all
+    /// pictures are right, 1 if there is a mistake, and otherwise 2 if one could not be checked.
     Check(Box<CheckOptions>),
 }
 
@@ -153,7 +153,11 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
     // The flags of a subcommand alone: reading `--device auto` asks the system for its GPUs.
     let Some((_, own)) = matches.subcommand() else {
         let flags = render::RenderFlags::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
-        return render::request(flags, &matches).map_err(Failure::Input);
+        let request = match flags.animation.is_given() && !flags.list {
+            true => animation::frames(flags).map(|options| Request::Frames(Box::new(options))),
+            false => render::request(flags, &matches),
+        };
+        return request.map_err(Failure::Input);
     };
     let mut command = Command::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
     if let Command::Plan(options) = &mut command {
@@ -166,14 +170,16 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
 fn matches(arguments: impl IntoIterator<Item = OsString>) -> Result<ArgMatches, clap::Error> {
     let mut arguments: Vec<OsString> = arguments.into_iter().collect();
     let error = match command().try_get_matches_from(&arguments) {
-        Err(error) if error.kind() == ErrorKind::InvalidSubcommand => error,
-        outcome => return outcome,
+        Ok(matches) => return Ok(matches),
+        Err(error) => error,
     };
     // A word that is not UTF-8 is shown with replacements.
-    let unknown = error.get(ContextKind::InvalidSubcommand).map(ToString::to_string);
+    let Some(unknown) = error.get(ContextKind::InvalidSubcommand).map(ToString::to_string) else {
+        return Err(error);
+    };
     let is_file = |word: &OsString| {
         let path = Path::new(word);
-        Some(word.to_string_lossy().into_owned()) == unknown && (path.extension().is_some() || path.is_file())
+        word.to_string_lossy() == unknown && (path.extension().is_some() || path.is_file())
     };
     let Some(place) = arguments.iter().skip(1).position(is_file) else { return Err(error) };
     arguments.insert(place + 1, "--open".into());

@@ -61,7 +61,7 @@ impl PlanOptions {
         recipe.samples_per_pixel = range.end;
         let manifest = Manifest::new(&range, self.parts).with_context(|| {
             let (parts, count) = (self.parts, range.end - range.start);
-            format!("--parts is {parts}, but there are {count} samples per pixel to divide; each part needs one at least")
+            format!("--parts is {parts}, but there are {count} samples per pixel to divide; each part needs at least one")
         })?;
         let manifest = Manifest {
             command: command_line(),

@@ -1,9 +1,9 @@
 //! Rendering, in the window or to files.
 
-use super::animation::{self, AnimationFlags};
 use super::sources::{self, ChosenRecipe, PictureFlags, SampleFlags};
 use super::values::{
-    DrawWith, ProgressChoice, file_ending, parse_duration, parse_noise_target, parse_seconds,
+    DrawWith, ProgressChoice, file_ending, parse_duration, parse_noise_target, parse_seconds, parse_turn,
+    range,
 };
 use super::{Request, backend, is_given};
 use crate::backends::BackendChoice;
@@ -12,11 +12,13 @@ use crate::job::output::OutputFormat;
 use crate::job::recipe::{Recipe, plain_name};
 use crate::job::render::RenderJob;
 use crate::job::saved;
-use crate::progressive::{Plan, Stop};
+use crate::progressive::{NoiseOf, Plan, Stop};
+use crate::scene::animation::{FRAME_LIMIT, Turn};
 use crate::stages::Stage;
 use crate::system::files::{STANDARD, ShownPath};
 use anyhow::{Result, bail, ensure};
-use clap::{ArgMatches, Args};
+use clap::{ArgGroup, ArgMatches, Args};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -72,6 +74,26 @@ pub(super) struct StopFlags {
     /// Estimated error: root mean square over pixels and channels, linear radiance
     #[arg(long, value_name = "RMSE", value_parser = parse_noise_target, conflicts_with = "AnimationFlags")]
     noise_target: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Animation", group = ArgGroup::new("moving").multiple(true).conflicts_with("sample_range"))]
+pub(super) struct AnimationFlags {
+    /// Render frames A to B - 1 of an animation to --out; the camera moves by --turntable or by the keyframes of the scene
+    /// file [default with --turntable: one turn]
+    #[arg(long, value_name = "A..B", value_parser = range(FRAME_LIMIT, "0..120"), group = "moving")]
+    pub frames: Option<Range<u32>>,
+    /// Let the camera circle around --look-at about --vup: the frames of a turn, or the degrees between two frames, such
+    /// as 1.5deg or -3deg [without a value: 120 frames]
+    #[arg(long, value_name = "FRAMES|DEGREES", value_parser = parse_turn, num_args = 0..=1,
+          require_equals = true, default_missing_value = "120", group = "moving")]
+    pub turntable: Option<Turn>,
+}
+
+impl AnimationFlags {
+    pub fn is_given(&self) -> bool {
+        self.frames.is_some() || self.turntable.is_some()
+    }
 }
 
 #[derive(Debug, Args)]
@@ -133,6 +155,8 @@ pub struct WindowOptions {
     pub stop: Option<Stop>,
     /// The film to resume.
     pub resume: Option<PathBuf>,
+    /// Whether the picture was read from a film or another picture.
+    pub is_saved: bool,
     /// Whether to open the usual first picture instead of the last one.
     pub is_fresh: bool,
     /// Tracing time between autosaves.
@@ -156,6 +180,8 @@ pub struct BatchOptions {
     pub stage: Option<&'static Stage>,
     /// Which samples, and when to stop.
     pub plan: Plan,
+    /// Whether the picture is denoised.
+    pub denoise: bool,
     /// File of the picture.
     pub out: PathBuf,
     pub format: OutputFormat,
@@ -178,9 +204,6 @@ pub struct BatchOptions {
 pub(super) fn request(mut flags: RenderFlags, matches: &ArgMatches) -> Result<Request> {
     if flags.list {
         return Ok(Request::List);
-    }
-    if flags.animation.is_given() {
-        return Ok(Request::Frames(Box::new(animation::frames(flags)?)));
     }
     let mut picture = None;
     match flags.open.take() {
@@ -233,6 +256,7 @@ fn window(flags: RenderFlags, opened: Option<&Path>, matches: &ArgMatches) -> Re
         is_size_given: picture.size.is_some(),
         is_picture_given: picture.is_given() || saved.is_some() || samples.estimate_error.is_some(),
         is_device_given: backend::FLAGS.into_iter().any(|flag| is_given(matches, flag)),
+        is_saved: saved.is_some() && !picture.has_source(),
         resume: files.resume.clone(),
         is_fresh: flags.fresh,
         autosave_every: flags.autosave_every,
@@ -272,6 +296,7 @@ fn batch(flags: RenderFlags) -> Result<BatchOptions> {
     }
     Ok(BatchOptions {
         plan: plan(&flags, &recipe),
+        denoise: flags.files.denoise,
         recipe,
         job,
         stage,
@@ -305,7 +330,8 @@ fn plan(flags: &RenderFlags, recipe: &Recipe) -> Plan {
         (None, None) if seconds.is_some() || noise.is_some() => (0, None),
         (None, _) => (0, Some(recipe.samples_per_pixel)),
     };
-    let stop = Stop { samples, seconds, noise, is_denoised: flags.files.denoise };
+    let noise_of = if flags.files.denoise { NoiseOf::Denoised } else { NoiseOf::Film };
+    let stop = Stop { samples, seconds, noise, noise_of };
     Plan { first_sample, pass_target: Plan::BATCH_PASS, ..Plan::until(stop) }
 }
 

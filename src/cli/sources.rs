@@ -74,6 +74,11 @@ impl PictureFlags {
         *self != PictureFlags::default()
     }
 
+    /// Whether they name a scene or a stage.
+    pub fn has_source(&self) -> bool {
+        self.scene.is_some() || self.stage.is_some()
+    }
+
     /// Replaces values of the recipe by those of the flags.
     pub fn change(&self, recipe: &mut Recipe, estimate_error: Option<bool>) {
         fn set<T: Copy>(value: &mut T, flag: Option<T>) {

@@ -31,6 +31,8 @@ const PILOT_WIDE: usize = WIDE + 16;
 /// Where the variance is needed.
 const VARIANCE_MARGIN: usize = BOX;
 
+// The rows of a tile are even or odd like those of the picture.
+const _: () = assert!(HIGH.is_multiple_of(2));
 const _: () = assert!(BOX + PILOT + PILOT_PATCH + FIT + FIT_PATCH <= HALO);
 
 /// How far two patches may differ, in standard deviations.
@@ -38,8 +40,9 @@ const PILOT_REACH: f32 = 0.9;
 const FIT_REACH: f32 = 1.3;
 /// Pulls the slopes of the plane to zero; pixels squared.
 const RIDGE: f32 = 0.16;
-/// Keeps one over the variance finite.
-const LEAST_VARIANCE: f32 = 1e-10;
+/// Keeps one over the variance finite. It is far below the variance of any noise that a film can hold, so a dark picture
+/// is filtered like a bright one.
+const LEAST_VARIANCE: f32 = 1e-30;
 /// Lanes of the fit's sums, which stay in registers for a row of shifts.
 const LANES: usize = 16;
 
@@ -122,8 +125,8 @@ pub(super) struct Half<'a> {
 pub(super) struct Scratch {
     raw: Guide,
     smooth: Guide,
-    /// Mean squared difference between the halves.
-    apart: Plane,
+    /// Mean squared difference between the halves, for the even and for the odd rows.
+    apart: [Plane; 2],
     weights: [[[f32; FIT_WIDE]; HIGH + FIT]; 2 * FIT + 1],
     sums: [[[f32; WIDE]; 15]; HIGH],
     pilot_weights: [[f32; PILOT_WIDE]; PILOT_HIGH],
@@ -132,48 +135,55 @@ pub(super) struct Scratch {
     pub filtered: [[[[f32; WIDE]; 3]; HIGH]; 2],
 }
 
-/// Filters both halves of a tile into `scratch.filtered`.
+/// Filters both halves of a tile into `scratch.filtered`. The filters of both halves share the variance. Even rows use
+/// that of odd rows and odd rows that of even ones, so one filtered half knows nothing of the other's noise there.
 #[inline(always)]
 pub(super) fn filter(halves: &[Half; 2], place: Place, scratch: &mut Scratch) {
     difference(halves, place, &mut scratch.apart);
     for (index, half) in halves.iter().enumerate() {
         load(half, place, scratch);
-        pilot(place, scratch);
-        fit(place, scratch, index);
+        for parity in 0..2 {
+            for y in 0..ROWS {
+                for x in 0..STRIDE {
+                    scratch.raw.set_variance([x, y], half.share * scratch.apart[parity][y][x]);
+                }
+            }
+            pilot(place, scratch);
+            fit(place, scratch, index, parity);
+        }
     }
 }
 
-/// The mean squared difference of the halves, averaged over boxes, from the odd fields of a chessboard only. The filters
-/// of both halves share it. So in the even fields, one filtered half knows nothing of the other's noise.
+/// The mean squared difference of the halves, averaged over boxes: for even rows over the odd rows of the box, and the
+/// reverse.
 #[inline(always)]
-fn difference(halves: &[Half; 2], place: Place, apart: &mut Plane) {
-    let mut odd = [[[0.0f32; STRIDE]; ROWS]; 2];
-    for y in 0..ROWS {
-        for x in 0..STRIDE {
-            let [column, row] = place.nearest([x, y]);
-            if super::is_odd(column, row) {
-                let index = row * place.size[0] + column;
-                let (a, b) = (halves[0].pixels[index], halves[1].pixels[index]);
-                let squares: [f32; 3] = from_fn(|c| (a[c] - b[c]) * (a[c] - b[c]));
-                (odd[0][y][x], odd[1][y][x]) = (squares.iter().sum::<f32>() / 3.0, 1.0);
-            }
-        }
-    }
+fn difference(halves: &[Half; 2], place: Place, apart: &mut [Plane; 2]) {
     const N: usize = STRIDE - 2 * BOX;
-    let mut across = [[[0.0f32; N]; ROWS]; 2];
-    for (across, odd) in across.iter_mut().flatten().zip(odd.iter().flatten()) {
+    let mut across = [[0.0f32; N]; ROWS];
+    for (y, across) in across.iter_mut().enumerate() {
+        let squares: [f32; STRIDE] = from_fn(|x| {
+            let [column, row] = place.nearest([x, y]);
+            let index = row * place.size[0] + column;
+            let (a, b) = (halves[0].pixels[index], halves[1].pixels[index]);
+            let squares: [f32; 3] = from_fn(|c| (a[c] - b[c]) * (a[c] - b[c]));
+            squares.iter().sum()
+        });
         for shift in 0..=2 * BOX {
-            (0..N).for_each(|x| across[x] += odd[x + shift]);
+            (0..N).for_each(|x| across[x] += squares[x + shift]);
         }
     }
-    for (y, apart) in apart.iter_mut().enumerate().take(ROWS - VARIANCE_MARGIN).skip(VARIANCE_MARGIN) {
-        let mut sums = [[0.0f32; N]; 2];
-        for (sums, across) in sums.iter_mut().zip(&across) {
-            for row in &across[y - BOX..=y + BOX] {
-                (0..N).for_each(|x| sums[x] += row[x]);
+    for (parity, apart) in apart.iter_mut().enumerate() {
+        for (y, apart) in apart.iter_mut().enumerate().take(ROWS - VARIANCE_MARGIN).skip(VARIANCE_MARGIN) {
+            let (mut sums, mut count) = ([0.0f32; N], 0.0f32);
+            for row in y - BOX..=y + BOX {
+                if place.nearest([0, row])[1] % 2 != parity {
+                    (0..N).for_each(|x| sums[x] += across[row][x]);
+                    count += 1.0;
+                }
             }
+            let scale = 1.0 / (3.0 * (2 * BOX + 1) as f32 * f32::max(count, 1.0));
+            (0..N).for_each(|x| apart[x + BOX] = sums[x] * scale);
         }
-        (0..N).for_each(|x| apart[x + BOX] = sums[0][x] / sums[1][x].max(1.0));
     }
 }
 
@@ -184,20 +194,20 @@ fn load(half: &Half, place: Place, scratch: &mut Scratch) {
             let [column, row] = place.nearest([x, y]);
             let pixel = half.pixels[row * place.size[0] + column];
             (0..3).for_each(|c| scratch.raw.rgb[c][y][x] = pixel[c]);
-            scratch.raw.set_variance([x, y], half.share * scratch.apart[y][x]);
         }
     }
 }
 
 /// The weights of pixels at a shift, by the distance of the patches around both (Rousselle, Knaus and Zwicker 2012,
 /// equation 3, with one variance for all channels and `(1 - d / 8)^8` instead of `exp(-d)`). `out` has the rows from
-/// `top` and the columns from `left`; `WIDER` is at least `N + 2 PATCH`.
+/// `top` and the columns from `left`; `WIDER` is at least `N + 2 PATCH`. Only every `step`-th row is set, from `first` on.
 #[inline(always)]
 fn weights<const PATCH: usize, const N: usize, const WIDER: usize>(
     guide: &Guide,
     [left, top]: [usize; 2],
     [dx, dy]: [isize; 2],
     reach: f32,
+    [first, step]: [usize; 2],
     out: &mut [[f32; N]],
 ) {
     let side = 2 * PATCH + 1;
@@ -221,7 +231,7 @@ fn weights<const PATCH: usize, const N: usize, const WIDER: usize>(
         let sums = &mut latest[row % side];
         *sums = from_fn(|i| distance[i]);
         (1..side).for_each(|shift| (0..N).for_each(|i| sums[i] += distance[i + shift]));
-        let Some(row) = row.checked_sub(2 * PATCH) else { continue };
+        let Some(row) = row.checked_sub(2 * PATCH).filter(|row| row % step == first) else { continue };
         let mut distance = latest[0];
         latest[1..side].iter().for_each(|sums| (0..N).for_each(|i| distance[i] += sums[i]));
         for i in 0..N {
@@ -247,6 +257,7 @@ fn pilot(place: Place, scratch: &mut Scratch) {
             corner,
             [dx, dy],
             PILOT_REACH,
+            [0, 1],
             pilot_weights,
         );
         let left = PILOT_LEFT.wrapping_add_signed(dx);
@@ -281,14 +292,14 @@ fn pilot(place: Place, scratch: &mut Scratch) {
     }
 }
 
-/// Fits a plane to the half around each pixel, by weights from the pilot. The result is the plane's value at the pixel.
-/// The weight of two pixels is the same both ways, so each is computed once.
+/// Fits a plane to the half around each pixel of the even or odd rows, by weights from the pilot. The result is the plane's
+/// value at the pixel. The weight of two pixels is the same both ways, so each is computed once.
 #[inline(always)]
-fn fit(place: Place, scratch: &mut Scratch, index: usize) {
+fn fit(place: Place, scratch: &mut Scratch, index: usize, parity: usize) {
     let Scratch { raw, smooth, weights: all, sums, filtered, .. } = scratch;
     let inside = place.columns();
     // The weight of a pixel for itself is 1.
-    for (y, sums) in sums.iter_mut().enumerate() {
+    for (y, sums) in sums.iter_mut().enumerate().skip(parity).step_by(2) {
         *sums = [[0.0; WIDE]; 15];
         sums[0] = [1.0; WIDE];
         (0..3).for_each(|c| sums[6 + c].copy_from_slice(&raw.rgb[c][HALO + y][HALO..HALO + WIDE]));
@@ -306,10 +317,12 @@ fn fit(place: Place, scratch: &mut Scratch, index: usize) {
                 corner,
                 [dx, dy as isize],
                 FIT_REACH,
+                // At an odd shift, one end of every second weight is in a row of the other parity.
+                if dy % 2 == 0 { [parity, 2] } else { [0, 1] },
                 out,
             );
         }
-        for (row, sums) in sums.iter_mut().enumerate() {
+        for (row, sums) in sums.iter_mut().enumerate().skip(parity).step_by(2) {
             for sign in [1, -1] {
                 let line = (HALO + row).wrapping_add_signed(sign * dy as isize);
                 if !place.holds(1, line) {
@@ -360,7 +373,7 @@ fn fit(place: Place, scratch: &mut Scratch, index: usize) {
             }
         }
     }
-    for (out, s) in filtered[index].iter_mut().zip(sums) {
+    for (out, s) in filtered[index].iter_mut().zip(sums).skip(parity).step_by(2) {
         for i in 0..WIDE {
             let (n, x, y, xy) = (s[0][i], s[1][i], s[2][i], s[4][i]);
             let (xx, yy) = (s[3][i] + RIDGE * n, s[5][i] + RIDGE * n);

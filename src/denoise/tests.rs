@@ -44,6 +44,7 @@ fn clean(size: [usize; 2], x: usize, y: usize) -> [f64; 3] {
 struct Plain {
     size: [isize; 2],
     halves: [Vec<[f64; 3]>; 2],
+    weights: [f64; 2],
     shares: [f64; 2],
 }
 
@@ -54,11 +55,13 @@ impl Plain {
     fn of(film: &Film) -> Self {
         let counts = [0, 1].map(|half| film.half_sample_count(half) as f64);
         let unit = |half: usize| counts[half] * FIXED_POINT_SCALE;
+        let weights = counts.map(|count| count / (counts[0] + counts[1]));
         Plain {
             size: [film.width() as isize, film.height() as isize],
             halves: [0, 1]
                 .map(|i| film.halves()[i].iter().map(|sum| sum.0.map(|k| k as f64 / unit(i))).collect()),
-            shares: [counts[1], counts[0]].map(|other| other / (counts[0] + counts[1])),
+            weights,
+            shares: film.variance_shares(),
         }
     }
 
@@ -74,11 +77,12 @@ impl Plain {
         (-radius..=radius).flat_map(move |dy| (-radius..=radius).map(move |dx| (dx, dy)))
     }
 
-    fn difference(&self, x: isize, y: isize) -> f64 {
+    /// For the rows of `parity`, from the other rows.
+    fn difference(&self, parity: isize, x: isize, y: isize) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
         for (dx, dy) in Plain::around(6) {
             let at = self.index(x + dx, y + dy);
-            if (at as isize % self.size[0] + at as isize / self.size[0]) % 2 == 1 {
+            if at as isize / self.size[0] % 2 != parity {
                 sum += (0..3).map(|c| (self.halves[0][at][c] - self.halves[1][at][c]).powi(2)).sum::<f64>()
                     / 3.0;
                 count += 1.0;
@@ -98,14 +102,14 @@ impl Plain {
         let distance = Plain::around(radius).map(|(dx, dy)| {
             let ((a, va), (b, vb)) = (guide(p.0 + dx, p.1 + dy), guide(q.0 + dx, q.1 + dy));
             let squares: f64 = (0..3).map(|c| (a[c] - b[c]).powi(2)).sum();
-            (squares - 6.0 * va.min(vb)) / (6.0 * reach * reach * (va.max(vb) + 1e-10))
+            (squares - 6.0 * va.min(vb)) / (6.0 * reach * reach * (va.max(vb) + 1e-30))
         });
         let mean = distance.sum::<f64>() / ((2 * radius + 1) * (2 * radius + 1)) as f64;
         (1.0 - mean.max(0.0) / 8.0).max(0.0).powi(8)
     }
 
-    fn pilot(&self, half: usize) -> Picture {
-        let variances = |x: isize, y: isize| self.shares[half] * self.difference(x, y);
+    fn pilot(&self, half: usize, parity: isize) -> Picture {
+        let variances = |x: isize, y: isize| self.shares[half] * self.difference(parity, x, y);
         let guide = |x: isize, y: isize| (self.halves[half][self.index(x, y)], variances(x, y));
         let pixels = (0..self.size[1]).flat_map(|y| (0..self.size[0]).map(move |x| (x, y)));
         pixels
@@ -149,19 +153,60 @@ impl Plain {
     }
 }
 
+impl Plain {
+    fn pixels(&self) -> impl Iterator<Item = (isize, isize)> {
+        let [width, height] = self.size;
+        (0..height).flat_map(move |y| (0..width).map(move |x| (x, y)))
+    }
+
+    fn filtered(&self, half: usize) -> Vec<[f64; 3]> {
+        let pilots = [0, 1].map(|parity| self.pilot(half, parity));
+        self.pixels().map(|(x, y)| self.fitted(half, &pilots[y as usize % 2], x, y)).collect()
+    }
+
+    /// With what the filter loses.
+    fn repaired(&self, half: usize) -> Vec<[f64; 3]> {
+        let (own, other, smooth) = (&self.halves[half], &self.halves[1 - half], self.filtered(half));
+        let near = |x: isize, y: isize, radius: isize| {
+            let places = Plain::around(radius).map(move |(dx, dy)| (x + dx, y + dy));
+            places.filter(|(x, y)| self.holds(*x, *y)).map(|(x, y)| (y, self.index(x, y)))
+        };
+        let mixed = self.pixels().map(|(x, y)| {
+            let [mut products, mut squares, mut of_lost] = [0.0; 3];
+            for (_, i) in near(x, y, 8).filter(|(row, _)| (row - y) % 2 != 0) {
+                let product: f64 =
+                    (0..3).map(|c| (other[i][c] - smooth[i][c]) * (own[i][c] - smooth[i][c])).sum();
+                of_lost += (0..3).map(|c| (own[i][c] - smooth[i][c]).powi(2)).sum::<f64>();
+                (products, squares) = (products + product, squares + product * product);
+            }
+            let share = (products - 0.5 * squares.sqrt()).max(0.0) / f64::max(of_lost, 1e-30);
+            let at = self.index(x, y);
+            [0, 1, 2].map(|c| smooth[at][c] + share.min(1.0) * (own[at][c] - smooth[at][c]))
+        });
+        let mixed: Vec<[f64; 3]> = mixed.collect();
+        let with_mean = self.pixels().map(|(x, y)| {
+            let (mut sum, mut count) = ([0.0; 3], 0.0);
+            for (_, i) in near(x, y, 16) {
+                (0..3).for_each(|c| sum[c] += own[i][c] - mixed[i][c]);
+                count += 1.0;
+            }
+            [0, 1, 2].map(|c| mixed[self.index(x, y)][c] + sum[c] / count)
+        });
+        with_mean.collect()
+    }
+}
+
 /// The largest difference of a film's denoised picture from the definition.
 fn difference_from_definition(film: &Film) -> f64 {
-    let (found, plain) = (of_film(film).unwrap().film, Plain::of(film));
-    let pilots = [0, 1].map(|half| plain.pilot(half));
+    let plain = Plain::of(film);
+    let found = filtered(Halves::of(film).unwrap(), Level::new(), &AtomicBool::new(false)).film;
+    let [a, b] = [0, 1].map(|half| plain.repaired(half));
     let mut most: f64 = 0.0;
-    for y in 0..plain.size[1] {
-        for x in 0..plain.size[0] {
-            let [a, b] = [0, 1].map(|half| plain.fitted(half, &pilots[half], x, y));
-            let mean = found.mean(plain.index(x, y));
-            for c in 0..3 {
-                let expected = plain.shares[1] * a[c] + plain.shares[0] * b[c];
-                most = most.max((mean[c] - expected.max(0.0)).abs());
-            }
+    for i in 0..a.len() {
+        let mean = found.mean(i);
+        for c in 0..3 {
+            let expected = plain.weights[0] * a[i][c] + plain.weights[1] * b[i][c];
+            most = most.max((mean[c] - expected.max(0.0)).abs());
         }
     }
     most

@@ -1,7 +1,7 @@
 //! Numeric constants that host and shaders share.
 
 use crate::film::{FIXED_POINT_MAX, FIXED_POINT_SCALE, RADIANCE_LIMIT};
-use crate::kernel::sampling::{GOLDEN_RATIO, LENS_BLOCK, sine_coefficients};
+use crate::kernel::sampling::{FIRST_REARRANGEMENT, GOLDEN_RATIO, SECOND_REARRANGEMENT, sine_coefficients};
 use crate::stages::BOOK_T_MIN;
 use std::fmt::Write;
 
@@ -55,11 +55,8 @@ constants! {
     /// Capacity of the uniform buffer in anchored spheres.
     pub const UNIFORM_ANCHORED: usize = 4;
 
-    /// Stack entries of a traversal on the GPU, one per level, and therefore the most levels of a tree.
+    /// Stack entries of a traversal on the GPU, one per level, and therefore the maximum number of levels of a tree.
     pub const WIDE_STACK_SIZE: usize = 24;
-
-    /// Words of a probe's input and output.
-    pub const PROBE_STRIDE: usize = 18;
 
     /// Stands for "no sphere" where a sphere's number is expected.
     pub const NONE: u32 = u32::MAX;
@@ -106,17 +103,22 @@ constants! {
 
     also
     GOLDEN_RATIO: u32,
-    LENS_BLOCK: u32,
+    FIRST_REARRANGEMENT: u32,
+    SECOND_REARRANGEMENT: u32,
     BOOK_T_MIN: f64,
     FIXED_POINT_SCALE: f64,
     FIXED_POINT_MAX: f64,
 }
 
-/// Stack entries of a traversal on the CPU, one per level, and therefore the most levels of a tree.
+/// Stack entries of a traversal on the CPU, one per level, and therefore the maximum number of levels of a tree.
 pub const STACK_SIZE: usize = 64;
 
+/// From this bit on, [`super::Node::count`] holds the order of an inner node's children: twice the axis that separates
+/// them, plus 1 if the second child comes before the first.
+pub const ORDER_SHIFT: u32 = 29;
+
 /// Bits of a node's count that hold the number of spheres.
-pub const COUNT_MASK: u32 = (1 << 29) - 1;
+pub const COUNT_MASK: u32 = (1 << ORDER_SHIFT) - 1;
 
 /// Half a unit in the last place of 1, in `f32`.
 pub const HALF_EPSILON: f64 = f32::EPSILON as f64 / 2.0;

@@ -1,5 +1,5 @@
-//! What a job needs from a kernel. Each feature is declared once: how it follows from the job, the part of a kernel
-//! that implements it, and its pipeline override on the GPU.
+//! Features: properties of a job that need code in a kernel. Each is declared once: how it follows from the job, the part
+//! of a kernel that implements it, and its pipeline override on the GPU.
 
 use super::{AnchoredSphere, Roots, Tag, UNIFORM_ANCHORED, UNIFORM_SPHERES};
 use crate::job::render::{RenderJob, SamplerKind};
@@ -20,7 +20,7 @@ pub mod parts {
     /// The rules of the stages.
     pub const RULES: u32 = 16;
     pub const ALL: u32 = 31;
-    /// Every kernel has the code, or the CPU tracer checks the job at run time.
+    /// For features whose code every kernel contains, or that the CPU checks at run time.
     pub const NONE: u32 = 0;
 
     const LABELS: [(u32, &str); 5] = [
@@ -30,6 +30,11 @@ pub mod parts {
         (HIERARCHY, "hierarchy"),
         (RULES, "stage rules"),
     ];
+
+    /// Whether a kernel with the parts `present` has all those `needed`.
+    pub const fn include(present: u32, needed: u32) -> bool {
+        needed & !present == 0
+    }
 
     /// Describes a kernel with these parts.
     pub fn describe(parts: u32) -> String {
@@ -47,12 +52,12 @@ pub mod parts {
     }
 }
 
-/// How a job's spheres are sorted, as the features need to know it.
+/// How a job's spheres are sorted.
 #[derive(Clone, Copy, Debug)]
 pub struct SortedSpheres<'a, R> {
-    /// Spheres whose nearer root alone counts.
+    /// Spheres of which only the nearer root counts.
     pub opaque_count: usize,
-    /// Spheres whose roots both count.
+    /// Spheres of which both roots count.
     pub two_root_count: usize,
     /// Spheres described relative to a point on their surface.
     pub anchored: &'a [AnchoredSphere<R>],
@@ -129,10 +134,21 @@ macro_rules! features {
             ] = $answer:expr;
         )*
     ) => {
-        /// What a job needs from a kernel; a kernel leaves out the code for everything else.
+        /// The features that a job needs from a kernel, which leaves out the code for everything else.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub struct Features {
             $($(#[doc = $doc])* pub $name: $type,)*
+        }
+
+        impl<const PARTS: u32> KernelFeatures<'_, PARTS> {
+            $(
+                $(#[doc = $doc])*
+                #[inline(always)]
+                pub fn $name(self) -> $type {
+                    let part = last!(parts::NONE $(, parts::$part)?);
+                    if parts::include(PARTS, part) { self.0.$name } else { $off }
+                }
+            )*
         }
 
         impl Default for Features {
@@ -169,6 +185,19 @@ macro_rules! features {
             }
         }
     };
+}
+
+/// A job's features as a kernel with these parts sees them. Without the part that implements it, a feature is off, and
+/// the compiler removes its code.
+#[derive(Clone, Copy)]
+pub struct KernelFeatures<'f, const PARTS: u32>(&'f Features);
+
+impl Features {
+    /// The features in a kernel with the parts `PARTS`.
+    #[inline(always)]
+    pub fn in_kernel<const PARTS: u32>(&self) -> KernelFeatures<'_, PARTS> {
+        KernelFeatures(self)
+    }
 }
 
 features! {
@@ -227,10 +256,10 @@ features! {
     hemisphere: bool [off false, part RULES] = job.rules().diffuse == Diffuse::Hemisphere;
     /// The reflectance depends on the picture strip.
     reflectance_strips: bool [off false, part RULES] = job.rules().reflectance_strips;
-    /// Paths may be too long for one dispatch of the GPU, and the threads of a workgroup share its blocks of samples. The
-    /// GPU decides this.
-    aside: bool [off true, general true] = true;
-    /// What a ray contributes.
+    /// Paths may be too long for one dispatch: its threads suspend them, and those of a workgroup share its blocks of
+    /// samples. Only the renderer on the GPU knows the length of a dispatch, and clears this where all paths fit.
+    suspends: bool [off true, general true] = true;
+    /// The contribution of a ray.
     shading: Shading [off Shading::Path, part RULES] = job.rules().shading;
     /// The laws that glass obeys.
     dielectric_laws: DielectricLaws [off DielectricLaws::Schlick, part RULES] = job.rules().dielectric;
@@ -265,9 +294,23 @@ mod tests {
     #[test]
     fn general_kernel_keeps_sample_features() {
         let own = Features { specks: true, surface: SurfaceRule::Book, ..Features::default() };
-        let special = Features { lambertian: false, few_spheres: true, opaque_count: 3, aside: false, ..own };
+        let special =
+            Features { lambertian: false, few_spheres: true, opaque_count: 3, suspends: false, ..own };
         assert_eq!(special.generalised(), own);
         let hemisphere = Features { hemisphere: true, hierarchy: true, lens: false, ..own };
         assert_eq!(hemisphere.generalised(), Features { lens: true, ..hemisphere });
+    }
+
+    #[test]
+    fn feature_without_its_part_is_off() {
+        let own =
+            Features { specks: true, surface: SurfaceRule::Book, opaque_count: 3, ..Features::default() };
+        let without = own.in_kernel::<{ parts::GLASS }>();
+        assert_eq!(
+            (without.specks(), without.surface(), without.opaque_count()),
+            (false, SurfaceRule::Exact, 3)
+        );
+        let with = own.in_kernel::<{ parts::EXTREMES | parts::RULES }>();
+        assert_eq!((with.specks(), with.surface(), with.opaque_count()), (true, SurfaceRule::Book, 3));
     }
 }

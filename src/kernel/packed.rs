@@ -1,15 +1,15 @@
 //! Records that shaders read and write in an array of words. Fields are packed without alignment, so a shader has no
-//! struct for them but a constant per field with its first word: `ASIDE_STATE` for `state` in [`GpuAside`].
-//! `ASIDE_WORDS` is the number of words.
+//! struct for them but a constant per field with its first word: `SUSPENDED_STATE` for `state` in [`GpuSuspendedPath`].
+//! `SUSPENDED_WORDS` is the number of words.
 
 use super::record::{Field, Record, Shared, named, record};
 use bytemuck::{Pod, Zeroable};
 use std::fmt::Write;
 
 record! {
-    /// A path that a thread has put aside: see shaders/aside.wgsl.
+    /// A path that a thread has suspended: see shaders/suspend.wgsl.
     #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-    pub struct GpuAside as "ASIDE" {
+    pub struct GpuSuspendedPath as "SUSPENDED" {
         /// Origin of the ray.
         pub origin: [f32; 3],
         /// The sphere that the ray left outwards.
@@ -20,16 +20,16 @@ record! {
         pub inside: u32,
         /// Throughput of the path.
         pub throughput: [f32; 3],
-        /// Bounce, samples left and whether the path is absorbed; 0 if nothing was put aside.
+        /// Bounce, samples left and whether the path is absorbed; 0 if no path was suspended.
         pub state: u32,
         /// Number of the block among those of the tile.
-        pub item: u32,
+        pub block: u32,
         /// Sums of the block.
         pub sums: [u32; 3],
         /// Squared sine of the angle of incidence inside steep glass.
         pub sine2: f32,
         /// In the first thread of a workgroup: number of the next block that no thread has begun.
-        pub queue: u32,
+        pub next_block: u32,
     }
 }
 
@@ -71,7 +71,7 @@ pub const fn word_count<T: Pod>() -> usize {
 }
 
 pub(super) fn wgsl() -> String {
-    constants::<GpuAside>() + &constants::<GpuRecordHead>() + &constants::<GpuRecordedRay>()
+    constants::<GpuSuspendedPath>() + &constants::<GpuRecordHead>() + &constants::<GpuRecordedRay>()
 }
 
 fn constants<T: Record + Pod>() -> String {

@@ -180,7 +180,7 @@ macro_rules! single {
     };
 }
 
-/// Selects the second name if there is one, else the first.
+/// Selects the last of one or two names.
 macro_rules! named {
     ($name:expr) => {
         $name

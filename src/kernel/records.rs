@@ -4,11 +4,11 @@
 //! A test compares the two layouts.
 
 use super::record::{Columns, Field, Record, Shape, Shared, column_of, loads, named, record, single};
-use super::{Real, Roots, UNDER_EYE, UNIFORM_ANCHORED, UNIFORM_SPHERES};
+use super::{COUNT_MASK, ORDER_SHIFT, Real, Roots, UNDER_EYE, UNIFORM_ANCHORED, UNIFORM_SPHERES};
 use bytemuck::{Pod, Zeroable};
 
 record! {
-    /// The data that shading needs about a sphere.
+    /// The data of a sphere for shading.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct ShadingRecord<R> as "ShadingRecord", loaded by LoadShading {
         /// Centre, or anchor of an anchored sphere.
@@ -19,7 +19,7 @@ record! {
         pub albedo: [R; 3],
         /// Radius of the sphere.
         pub radius: R,
-        /// Length of the unit vector's part in the scattered direction; a negative sign (also on 0) marks a reflection.
+        /// Weight of the random unit vector in the scattered direction; a negative sign (also on 0) marks a reflection.
         pub weight: R,
         /// Refraction index; 0 if not glass.
         pub refraction_index: R,
@@ -29,7 +29,7 @@ record! {
         pub f0: R,
         /// Unit vector from the anchor to the centre; 0 if not anchored.
         pub inward: [R; 3],
-        /// 0 if not anchored, 1 if anchored, 2 if every ray is inside.
+        /// 0 if not anchored, 1 if anchored, 2 for a cavity: an anchored sphere that every ray is inside of.
         pub anchoring: R,
     }
 }
@@ -175,6 +175,21 @@ pub struct Node<R> {
     pub count: u32,
 }
 
+impl<R> Node<R> {
+    /// Number of spheres in a leaf; 0 for an inner node.
+    #[inline(always)]
+    pub fn sphere_count(&self) -> u32 {
+        self.count & COUNT_MASK
+    }
+
+    /// The child that comes first, 0 or 1. `near_children` has a bit for each order of children that a node can have.
+    #[inline(always)]
+    pub fn nearer_child(&self, near_children: u32) -> u32 {
+        let order = self.count >> ORDER_SHIFT;
+        (near_children >> order) & 1
+    }
+}
+
 record! {
     /// The parameters of a job, the same for all its dispatches.
     #[derive(Clone, Copy, Debug)]
@@ -187,7 +202,7 @@ record! {
         pub extent: f32,
         /// Growth of the sky radiance with the direction's y, in units of the film.
         pub sky_slope: [f32; 3],
-        /// Most rays per path.
+        /// Maximum number of rays per path.
         pub max_depth: u32,
         /// Seed of the sampler.
         pub seed: u32,
@@ -222,8 +237,8 @@ record! {
         pub tile_count: u32,
         /// Number of blocks of samples.
         pub block_count: u32,
-        /// Loop iterations (turns) after which a thread puts its path aside.
-        pub turn_limit: u32,
+        /// Loop iterations after which a thread suspends its path.
+        pub iteration_limit: u32,
         /// First picture row in the film buffer.
         pub first_row: u32,
         /// Number of rows in the film buffer.
@@ -232,10 +247,10 @@ record! {
         pub sample_count: u32,
         /// For resolve: a `TRANSFER_` tag.
         pub transfer: u32,
-        /// 1 if threads resume the paths that were put aside, 0 if they start new ones.
+        /// 1 if threads resume suspended paths, 0 if they start new ones.
         pub resumes: u32,
-        /// First word of the storage for paths that are put aside.
-        pub first_aside: u32,
+        /// First scratch word for suspended paths.
+        pub first_suspended: u32,
     }
 }
 
@@ -279,7 +294,7 @@ record! {
         pub finished: u32 as "atomic<u32>",
         /// Samples whose sums are in the film, high word.
         pub finished_high: u32 as "atomic<u32>",
-        /// Threads that have put a path aside.
+        /// Threads that have suspended a path.
         pub unfinished: u32 as "atomic<u32>",
         /// Threads among them that could not trace a single ray to its end.
         pub stuck: u32 as "atomic<u32>",

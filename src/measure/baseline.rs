@@ -2,7 +2,7 @@
 
 use crate::film::{FIXED_POINT_SCALE, Film, PixelSum};
 use crate::job::output::{Encoding, read_picture};
-use crate::job::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+use crate::job::render::{BackendInfo, Control, Outcome, RenderError, RenderJob, Renderer, Stats};
 use crate::scene::{Camera, Parameter, Scene};
 use anyhow::{Context, Result, anyhow, bail};
 use glam::DVec3;
@@ -128,13 +128,13 @@ impl Renderer for Baseline {
         Ok(())
     }
 
-    fn accumulate(
+    fn advance(
         &mut self,
         job: &RenderJob,
         range: Range<u64>,
         film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
+        &Control { cancel, .. }: &Control,
+    ) -> Result<Outcome, RenderError> {
         self.prepare(job, cancel)?;
         let stats = self.run(job, &range, cancel)?;
         // The encoding applies only to integers; a PFM holds floats.
@@ -144,7 +144,7 @@ impl Renderer for Baseline {
         for (sum, mean) in film.halves_mut()[0].iter_mut().zip(picture.pixels) {
             sum.add(PixelSum(mean.map(|x| (x * scale).round() as u64)));
         }
-        Ok(stats)
+        Ok(stats.into())
     }
 }
 

@@ -19,10 +19,10 @@ const TOUCHING_SHARE: f64 = 50.0;
 /// Spheres touch if they cross or are at most this many rounding units apart.
 const TOUCHING_UNITS: f64 = 16.0;
 
-/// Most spheres anchored because of small lengths, since every ray tests all of them. Those that gain most come first.
+/// Maximum number of anchored spheres, since every ray tests all of them. Those that gain most come first.
 const ANCHORED_LIMIT: usize = 16;
 
-/// Most spheres examined for anchoring.
+/// Maximum number of spheres examined for anchoring.
 const CANDIDATE_LIMIT: usize = 64;
 
 /// Coordinates are relative to a point near the eye if the eye's distance from the world's origin exceeds the smallest
@@ -113,7 +113,7 @@ impl Groups {
         let mut groups = Groups::default();
         if is_exact {
             groups.origin = origin(shown().map(|(_, sphere)| sphere), &eye);
-            groups.anchored = anchored(shown, &eye, &is_opaque);
+            groups.anchored = anchored(shown(), &eye, &is_opaque);
         }
         for (index, sphere) in shown() {
             let index = index as u32;
@@ -186,62 +186,120 @@ fn origin<'a>(spheres: impl Iterator<Item = &'a Sphere> + Clone, eye: &Eye) -> D
     (foot / cell).round() * cell
 }
 
-/// Spheres to anchor, by ascending index: those that all rays start in or on, and those so large for what is near their
-/// surface that rounding at their radius would show.
-fn anchored<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
-    shown: impl Fn() -> I + Copy,
-    eye: &Eye,
+/// Spheres to anchor, by ascending index: those that all rays start in or on, and those so large for the details near
+/// their surface that rounding at their radius would show.
+fn anchored<'a>(
+    shown: impl Iterator<Item = (usize, &'a Sphere)> + Clone,
+    eye: &'a Eye,
     is_opaque: &impl Fn(&Sphere) -> bool,
 ) -> Vec<Anchored> {
-    let needs_anchor = |radius: f64, length: f64| HALF_EPSILON * radius > ANCHOR_SHARE * length;
-    let is_special = |s: &Sphere| (is_opaque(s) && eye.is_inside(s)) || eye.height(s) == 0.0;
-    let has_glass = shown().any(|(_, s)| !is_opaque(s));
+    let has_glass = shown.clone().any(|(_, sphere)| !is_opaque(sphere));
     let share = if has_glass { TOUCHING_SHARE } else { 1.0 };
-    let smallest = shown().map(|(_, s)| s.radius / share).fold(f64::INFINITY, f64::min);
-    let mut candidates: Vec<(usize, &Sphere)> = shown()
-        .filter(|(_, s)| is_special(s) || needs_anchor(s.radius, smallest.min(positive(eye.height(s).abs()))))
-        .collect();
-    let gain = |s: &Sphere, length: f64| {
-        if is_special(s) { f64::INFINITY } else { s.radius / length.min(positive(eye.height(s).abs())) }
+    let smallest = shown.clone().map(|(_, sphere)| sphere.radius / share).fold(f64::INFINITY, f64::min);
+    let candidate = |(index, sphere): (usize, &'a Sphere)| Candidate {
+        index: index as u32,
+        sphere,
+        eye,
+        is_opaque: is_opaque(sphere),
+        length: smallest,
+        detail: None,
     };
-    candidates.sort_by(|(_, a), (_, b)| gain(b, smallest).total_cmp(&gain(a, smallest)));
-    candidates.truncate(CANDIDATE_LIMIT);
-    let mut chosen: Vec<(f64, Anchored)> = candidates
-        .into_iter()
-        .filter_map(|(index, sphere)| {
-            let height = positive(eye.height(sphere).abs());
-            let detail = Detail::near(shown, sphere, |_, size| size);
-            let contact = Detail::near(shown, sphere, |other, size| {
-                let leaks = !(is_opaque(other) && is_opaque(sphere)) && touch(sphere, other);
-                if leaks { size / TOUCHING_SHARE } else { f64::INFINITY }
-            });
-            let lengths = [detail, contact].into_iter().flatten().map(|detail| detail.length);
-            let length = lengths.fold(f64::INFINITY, f64::min);
-            let detail = detail.or(contact);
-            if !is_special(sphere) && !needs_anchor(sphere.radius, length.min(height)) {
-                return None;
-            }
-            let under_eye = eye.height(sphere) == 0.0 && eye.lens_radius == 0.0;
-            let may_be_inside = eye.may_be_inside(sphere) && !under_eye;
-            let roots = match (is_opaque(sphere), eye.is_inside(sphere), may_be_inside) {
-                (true, true, _) => Roots::Farther,
-                (true, false, false) => Roots::Nearer,
-                _ => Roots::Both,
-            };
-            // A distant anchor would leave the eye itself unresolved.
-            let is_eye_resolved =
-                |place: DVec3| HALF_EPSILON * eye.position.distance(place) <= ANCHOR_SHARE * height;
-            let near = detail
-                .filter(|detail| !under_eye && detail.length <= height && is_eye_resolved(detail.place));
-            let near = near.map_or(eye.position, |detail| detail.place);
-            Some((gain(sphere, length), Anchored { index: index as u32, roots, under_eye, near }))
-        })
-        .collect();
-    chosen.sort_by(|a, b| b.0.total_cmp(&a.0));
-    chosen.truncate(ANCHORED_LIMIT);
-    let mut chosen: Vec<Anchored> = chosen.into_iter().map(|(_, anchored)| anchored).collect();
-    chosen.sort_by_key(|anchored| anchored.index);
-    chosen
+    let mut candidates: Vec<Candidate> =
+        shown.clone().map(candidate).filter(Candidate::needs_anchor).collect();
+    keep_best(&mut candidates, CANDIDATE_LIMIT);
+    candidates.iter_mut().for_each(|candidate| candidate.examine(shown.clone(), is_opaque));
+    candidates.retain(Candidate::needs_anchor);
+    keep_best(&mut candidates, ANCHORED_LIMIT);
+    candidates.sort_by_key(|candidate| candidate.index);
+    candidates.iter().map(Candidate::anchored).collect()
+}
+
+/// Keeps the candidates that gain most from an anchor.
+fn keep_best(candidates: &mut Vec<Candidate>, limit: usize) {
+    candidates.sort_by(|a, b| b.gain().total_cmp(&a.gain()));
+    candidates.truncate(limit);
+}
+
+/// A sphere that may need an anchor.
+struct Candidate<'a> {
+    index: u32,
+    sphere: &'a Sphere,
+    eye: &'a Eye,
+    is_opaque: bool,
+    /// A lower bound of the lengths near the surface; once examined, the smallest of them.
+    length: f64,
+    detail: Option<Detail>,
+}
+
+impl Candidate<'_> {
+    /// Finds the details near the surface. Where glass touches another sphere, smaller ones count.
+    fn examine<'a>(
+        &mut self,
+        shown: impl Iterator<Item = (usize, &'a Sphere)> + Clone,
+        is_opaque: &impl Fn(&Sphere) -> bool,
+    ) {
+        let detail = Detail::near(shown.clone(), self.sphere, |_, size| size);
+        let contact = Detail::near(shown, self.sphere, |other, size| {
+            let leaks = !(is_opaque(other) && self.is_opaque) && touch(self.sphere, other);
+            if leaks { size / TOUCHING_SHARE } else { f64::INFINITY }
+        });
+        let lengths = [detail, contact].into_iter().flatten().map(|detail| detail.length);
+        self.length = lengths.fold(f64::INFINITY, f64::min);
+        self.detail = detail.or(contact);
+    }
+
+    /// Whether rounding at the radius would show, or all rays start in or on the sphere.
+    fn needs_anchor(&self) -> bool {
+        self.holds_all_rays() || HALF_EPSILON * self.sphere.radius > ANCHOR_SHARE * self.smallest_length()
+    }
+
+    fn roots(&self) -> Roots {
+        let may_be_inside = self.eye.may_be_inside(self.sphere) && !self.is_under_eye();
+        match (self.is_opaque, self.eye.is_inside(self.sphere), may_be_inside) {
+            (true, true, _) => Roots::Farther,
+            (true, false, false) => Roots::Nearer,
+            _ => Roots::Both,
+        }
+    }
+
+    /// A point that the anchor should be close to: the details, unless the eye needs it more.
+    fn place(&self) -> DVec3 {
+        let height = self.height();
+        // A distant anchor would leave the eye itself unresolved.
+        let is_eye_resolved =
+            |place: DVec3| HALF_EPSILON * self.eye.position.distance(place) <= ANCHOR_SHARE * height;
+        let is_close = |detail: &Detail| detail.length <= height && is_eye_resolved(detail.place);
+        let detail = self.detail.filter(|detail| !self.is_under_eye() && is_close(detail));
+        detail.map_or(self.eye.position, |detail| detail.place)
+    }
+
+    fn anchored(&self) -> Anchored {
+        let (index, under_eye) = (self.index, self.is_under_eye());
+        Anchored { index, roots: self.roots(), under_eye, near: self.place() }
+    }
+
+    /// How much an anchor improves.
+    fn gain(&self) -> f64 {
+        if self.holds_all_rays() { f64::INFINITY } else { self.sphere.radius / self.smallest_length() }
+    }
+
+    fn holds_all_rays(&self) -> bool {
+        (self.is_opaque && self.eye.is_inside(self.sphere)) || self.eye.height(self.sphere) == 0.0
+    }
+
+    fn is_under_eye(&self) -> bool {
+        self.eye.height(self.sphere) == 0.0 && self.eye.lens_radius == 0.0
+    }
+
+    fn smallest_length(&self) -> f64 {
+        self.length.min(self.height())
+    }
+
+    /// Distance of the eye from the surface; infinity if the eye is on it.
+    fn height(&self) -> f64 {
+        let height = self.eye.height(self.sphere).abs();
+        if height > 0.0 { height } else { f64::INFINITY }
+    }
 }
 
 /// What rounding at a sphere's radius could affect.
@@ -257,14 +315,15 @@ struct Detail {
 impl Detail {
     /// `None` if all lengths are so large that the sphere needs no anchor. `counted` maps a sphere and its length to
     /// the length that counts.
-    fn near<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
-        shown: impl Fn() -> I,
+    fn near<'a>(
+        shown: impl Iterator<Item = (usize, &'a Sphere)> + Clone,
         sphere: &Sphere,
         counted: impl Fn(&Sphere, f64) -> f64,
     ) -> Option<Self> {
         let relevant = HALF_EPSILON / ANCHOR_SHARE * sphere.radius;
         let lengths = || {
-            shown().filter(|(_, other)| other.radius < TOUCHING_SHARE * relevant).map(|(_, other)| {
+            let small = shown.clone().filter(|(_, other)| other.radius < TOUCHING_SHARE * relevant);
+            small.map(|(_, other)| {
                 let away = (other.center.distance(sphere.center) - sphere.radius).abs();
                 (counted(other, other.radius.max(away)), other.center)
             })
@@ -277,11 +336,6 @@ impl Detail {
         }
         (count > 0.0).then(|| Detail { length, place: sum / count })
     }
-}
-
-/// Replaces 0 by infinity.
-fn positive(length: f64) -> f64 {
-    if length > 0.0 { length } else { f64::INFINITY }
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 use super::bounded::Bounded;
 use super::regions::{Forest, Method};
 use super::wide_bvh::WideBvh;
-use crate::kernel::{Node, Real, STACK_SIZE};
+use crate::kernel::{Node, ORDER_SHIFT, Real, STACK_SIZE};
 use crate::scene::Sphere;
 use glam::DVec3;
 use obvhs::BvhBuildParams;
@@ -18,10 +18,6 @@ use std::sync::atomic::AtomicBool;
 
 /// Most levels of a tree, limited by the traversal's stack.
 pub const DEPTH_LIMIT: usize = STACK_SIZE;
-
-/// From this bit on, [`Node::count`] holds twice the axis that separates the children, plus 1 if the second child comes
-/// before the first.
-pub const ORDER_SHIFT: u32 = 29;
 
 #[derive(Clone, Copy)]
 pub(super) struct Leaves {
@@ -247,7 +243,7 @@ mod tests {
         let bounded = Bounded::all(&spheres, &DVec3::ZERO);
         let go_on = AtomicBool::new(false);
         let tree = in_walking_order(parted::build(&bounded, 1, false, &go_on));
-        assert!(depth(&tree.nodes) > 30, "{}", depth(&tree.nodes));
+        assert!(depth(&tree.nodes) > 8, "{}", depth(&tree.nodes));
         let tree = in_walking_order(parted::build(&bounded, 1, true, &go_on));
         assert_eq!(depth(&tree.nodes), 8);
     }

@@ -30,6 +30,27 @@ use std::time::{Duration, Instant};
 /// 4 spheres and the hierarchy a tenth faster with 48; between 12 and 32 they were equally fast.
 const HIERARCHY_MIN_SPHERES: usize = 24;
 
+/// Where a prepared scene has its hierarchy from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HierarchySource {
+    /// It has no hierarchy.
+    None,
+    /// Built for it, in this wall time.
+    Built(Duration),
+    /// Kept from an earlier job.
+    Kept,
+}
+
+impl HierarchySource {
+    /// Wall time of building the hierarchy; zero if none was built.
+    pub fn time(self) -> Duration {
+        match self {
+            HierarchySource::Built(time) => time,
+            HierarchySource::None | HierarchySource::Kept => Duration::ZERO,
+        }
+    }
+}
+
 /// The hierarchy that a scene of many spheres gets.
 #[derive(Clone, Copy)]
 enum Tree {
@@ -55,8 +76,7 @@ pub struct PreparedScene<R> {
     pub anchored: Vec<AnchoredSphere<R>>,
     /// The hierarchy over `two_root`, if there are enough spheres.
     pub hierarchy: Option<Hierarchy<R>>,
-    /// Wall time of building the hierarchy.
-    pub hierarchy_time: Duration,
+    pub hierarchy_source: HierarchySource,
     /// One per row.
     pub records: Vec<RecordColumns<R>>,
     /// The scene index of each row's sphere.
@@ -119,7 +139,8 @@ impl<R: Real> PreparedScene<R> {
     ) -> Option<Self> {
         let facts = Arc::new(Facts::of(job.scene()));
         let groups = Groups::of(job, &facts);
-        let (mut listed, mut hierarchy, mut hierarchy_time) = (groups.in_list_order(), None, Duration::ZERO);
+        let (mut listed, mut hierarchy, mut hierarchy_source) =
+            (groups.in_list_order(), None, HierarchySource::None);
         let is_wanted = job.rules().surface == SurfaceRule::Exact && listed.len() >= HIERARCHY_MIN_SPHERES;
         if let Some(tree) = tree.filter(|_| is_wanted) {
             let anchored: Vec<AnchoredSphere<R>> =
@@ -141,9 +162,9 @@ impl<R: Real> PreparedScene<R> {
                 Tree::Thorough => Hierarchy::build_unless(cancel, spheres, groups.origin, Effort::Thorough),
                 Tree::Wide => Hierarchy::build_wide(cancel, spheres, groups.origin),
             }?;
-            listed = built.ranks.iter().map(|rank| listed[*rank as usize]).collect();
+            listed = built.ranks.par_iter().map(|rank| listed[*rank as usize]).collect();
             hierarchy = Some(built);
-            hierarchy_time = begin.elapsed();
+            hierarchy_source = HierarchySource::Built(begin.elapsed());
         }
         let (scene, settings) = (job.scene(), *job.settings());
         let one_root = groups.opaque.len();
@@ -168,7 +189,7 @@ impl<R: Real> PreparedScene<R> {
             two_root,
             anchored: Vec::new(),
             hierarchy,
-            hierarchy_time,
+            hierarchy_source,
             records,
             scene_index: listed,
             camera: CameraTable::new(job.camera(), settings.width, settings.height, groups.origin),
@@ -210,7 +231,7 @@ impl<R: Real> PreparedScene<R> {
         let settings = *job.settings();
         self.camera = CameraTable::new(job.camera(), settings.width, settings.height, groups.origin);
         self.settings = settings;
-        self.hierarchy_time = Duration::ZERO;
+        self.hierarchy_source = HierarchySource::Kept;
         self.see(job, groups);
         true
     }

@@ -76,7 +76,11 @@ impl<T: Send> Forest<T> {
             let around = tree.nodes.first().map_or_else(Aabb::empty, |root| *root.aabb());
             Some((around, lay_out(tree, &boxes, places)))
         };
-        let built: Option<Vec<(Aabb, T)>> = regions.into_par_iter().map(tree_of).collect();
+        let built: Option<Vec<(Aabb, T)>> = match regions.len() {
+            // On the caller's thread, which may have a low priority.
+            1 => regions.into_iter().map(tree_of).collect(),
+            _ => regions.into_par_iter().map(tree_of).collect(),
+        };
         let (around, trees): (Vec<Aabb>, Vec<T>) = built?.into_iter().unzip();
         let top = parted::build(&around, 1, method == Method::Halved, cancel);
         (!cancel.load(Ordering::Relaxed)).then_some(Forest { trees, top })

@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::job::recipe::Recipe;
-use crate::kernel::{COUNT_MASK, EYE, LoadShading, Node, STACK_SIZE};
+use crate::kernel::{EYE, LoadShading, Node, STACK_SIZE};
 use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
 
@@ -95,8 +95,8 @@ fn validate_hierarchy<R: Real>(
         let has_one_root = radius2.to_f64() < 0.0;
         ensure!(has_one_root == ((*rank as usize) < one_root), "sphere {number} has a wrong number of roots");
     }
-    if wide.is_some() {
-        // Its nodes are checked whenever they are built.
+    if wide.is_some() || nodes.is_empty() {
+        // The GPU's nodes are checked when they are built, and are later on the device only.
         return Ok(());
     }
     let (mut reached, mut held) = (0, vec![false; spheres.len()]);
@@ -110,7 +110,7 @@ fn validate_hierarchy<R: Real>(
         let mut corners = node.low.iter().chain(&node.high);
         let is_within = corners.all(|x| x.to_f64().abs() <= extent.to_f64());
         ensure!(is_within, "node {index} reaches farther than {extent:?}");
-        let (first, count) = (node.first as usize, (node.count & COUNT_MASK) as usize);
+        let (first, count) = (node.first as usize, node.sphere_count() as usize);
         if count == 0 {
             for child in [first, first + 1] {
                 let is_within = nodes.get(child).is_none_or(|child| holds(node, child.low, child.high));

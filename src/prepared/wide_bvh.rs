@@ -229,14 +229,13 @@ mod tests {
                     return Err(format!("node {index} is deeper than {}", self.depth));
                 }
                 let [first_child, first_sphere, which_are_nodes, _] = rows[LINKS];
-                let boxes = boxes_of(rows);
-                for child in 0..8 {
+                for (child, own) in boxes_of(rows).into_iter().enumerate() {
                     let mark = rows[12 + child / 4][child % 4];
                     if mark == 0 {
                         continue;
                     }
                     let mut around: Vec<Aabb> = around.clone();
-                    around.push(boxes[child]);
+                    around.push(own);
                     let is_node = which_are_nodes >> child & 1 == 1;
                     if is_node != (mark == 1 << (24 + child)) {
                         return Err(format!("the mark of child {child} of node {index} is {mark:#x}"));

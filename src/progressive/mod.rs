@@ -16,7 +16,7 @@ mod view;
 mod worker;
 
 pub use passes::PassSizer;
-pub use plan::{EndReason, NOISE_TARGET_FIRST_SAMPLES, Plan, Stop};
+pub use plan::{EndReason, NOISE_TARGET_FIRST_SAMPLES, NoiseOf, Plan, Stop};
 pub use shared::Picture;
 pub use status::{Contribution, HistoryPoint, Phase, Status};
 pub use view::{ReferenceMeans, View, luminance, standard_error};

@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn slow_passes_stay_small_and_the_time_left_cuts_them() {
+    fn slow_passes_stay_small_and_fit_the_time_left() {
         let mut sizer = PassSizer::new(2);
         let held = SampleRanges::default();
         sizer.measured(2, Duration::from_secs(20), TARGET);
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pass_gives_each_half_a_sample_or_is_not_begun() {
+    fn shortest_pass_gives_each_half_a_sample() {
         let mut sizer = PassSizer::new(2);
         sizer.measured(2, Duration::from_secs(20), TARGET);
         let in_time =
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn passes_have_at_most_65536_samples_however_fast_they_are() {
+    fn passes_have_at_most_65536_samples() {
         let begun = PassSizer::new(2).begin_with(1 << 20);
         let length = |sizer: &PassSizer| {
             let pass = sizer.next(&SampleRanges::default(), 0..1 << 30, None).unwrap();
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn next_backends_speed_is_unknown() {
+    fn restart_forgets_the_speed() {
         let (mut sizer, none) = (PassSizer::new(2), SampleRanges::default());
         let in_a_second = |sizer: &PassSizer| sizer.next(&none, 0..100, Some(TARGET));
         sizer.measured(2, 10 * TARGET, TARGET);

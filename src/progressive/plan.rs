@@ -14,15 +14,25 @@ pub struct Stop {
     pub samples: Option<u64>,
     /// Time limit in seconds, including preparation but not pauses. At least one pass is always rendered.
     pub seconds: Option<f64>,
-    /// Target RMSE in linear radiance, as estimated from the halves: see [`crate::film::Film::meets`]. Needs a film with
-    /// two halves.
+    /// Target RMSE in linear radiance, as estimated from the halves. Needs a film with two halves.
     pub noise: Option<f64>,
-    /// Whether the picture is denoised. The target is then for [`crate::denoise::DenoisedError::upper_rmse`].
-    pub is_denoised: bool,
+    /// The picture whose error the target limits.
+    pub noise_of: NoiseOf,
+}
+
+/// The picture whose error a noise target limits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NoiseOf {
+    /// The film: see [`crate::film::Film::meets`].
+    #[default]
+    Film,
+    /// The picture that is written with denoising: the denoised one, or the raw one if that is better. See
+    /// [`crate::denoise::DenoisedError::upper_rmse`].
+    Denoised,
 }
 
 impl Stop {
-    /// The error below which the eye sees no further change of a picture on a screen.
+    /// The error below which the eye sees no further change in a picture on a screen.
     pub const NOISE: f64 = 0.002;
 
     /// Stops after this many samples per pixel.
@@ -72,8 +82,8 @@ impl Plan {
         Plan::until(Stop::default())
     }
 
-    /// The duration to plan the first pass for, once the time per sample is known. `None` if passes should start short,
-    /// because someone watches or because the error should be estimated early.
+    /// The planned duration of the first pass, once the time per sample is known. `None` if passes should start short, to
+    /// show a picture or to estimate the error early.
     pub fn first_pass_target(&self) -> Option<Duration> {
         let is_long = self.pass_target >= Plan::BATCH_PASS && self.stop.noise.is_none();
         let limit = self.stop.time_limit().unwrap_or(Duration::MAX);
@@ -82,9 +92,9 @@ impl Plan {
 
     /// The duration of the passes after the first. Where a stop takes at most half a pass, long passes can be twice as
     /// long.
-    pub fn later_pass_target(&self, heeds_stop: bool) -> Duration {
+    pub fn later_pass_target(&self, stops_early: bool) -> Duration {
         match self.first_pass_target() {
-            Some(_) if heeds_stop => 2 * self.pass_target,
+            Some(_) if stops_early => 2 * self.pass_target,
             _ => self.pass_target,
         }
     }
@@ -134,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_time_limit_is_a_duration_whatever_its_seconds() {
+    fn any_time_limit_is_a_duration() {
         let limit = |seconds: f64| Stop { seconds: Some(seconds), ..Stop::default() }.time_limit();
         for (seconds, expected) in [
             (1.5, Duration::from_millis(1500)),
@@ -149,16 +159,16 @@ mod tests {
     }
 
     #[test]
-    fn unwatched_passes_that_heed_stops_are_long() {
+    fn unwatched_passes_that_stop_early_are_long() {
         let batch = |stop| Plan { pass_target: Plan::BATCH_PASS, ..Plan::until(stop) };
         let to_a_noise = Stop { noise: Some(0.1), ..Stop::default() };
-        for (plan, heeds_stop, factor) in [
+        for (plan, stops_early, factor) in [
             (batch(Stop::at_samples(8)), true, 2),
             (batch(Stop::at_samples(8)), false, 1),
             (batch(to_a_noise), true, 1),
             (Plan::endless(), true, 1),
         ] {
-            assert_eq!(plan.later_pass_target(heeds_stop), factor * plan.pass_target, "{plan:?}");
+            assert_eq!(plan.later_pass_target(stops_early), factor * plan.pass_target, "{plan:?}");
         }
     }
 }

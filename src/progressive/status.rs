@@ -71,9 +71,9 @@ pub struct Status {
     /// Statistics summed over the passes.
     pub stats: Stats,
     pub prepare: Duration,
-    /// What the current kernel contains.
+    /// The parts of the current kernel.
     pub kernel: String,
-    /// What the current kernel leaves out.
+    /// The parts that the current kernel leaves out.
     pub left_out: Vec<&'static str>,
     /// Wall time of building the hierarchy, which is part of `prepare`.
     pub hierarchy: Duration,

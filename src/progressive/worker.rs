@@ -88,18 +88,18 @@ impl Worker {
                 return;
             }
             RenderCommand::Take(taker) => {
-                // If the receiver is gone, nobody wants the film.
+                // If the receiver is gone, the film is not needed.
                 let _ = taker.send(self.take_film());
                 return;
             }
             RenderCommand::Look | RenderCommand::SetPlan(_) => {}
-            _ => self.collect(),
+            _ => self.finish_samples(),
         }
         let Some(render) = &mut self.render else { return };
         match command {
             RenderCommand::Pause if render.is_working() => render.status.phase = Phase::Paused,
             RenderCommand::Resume => match render.status.phase {
-                Phase::Paused | Phase::Done(EndReason::Stopped) => render.go_on(),
+                Phase::Paused | Phase::Done(EndReason::Stopped) => render.resume(),
                 _ => {}
             },
             RenderCommand::Stop => render.stop(),
@@ -139,11 +139,11 @@ impl Worker {
         }
     }
 
-    /// Collects the renderer's pending samples, before the film is read or another renderer continues it.
-    fn collect(&mut self) {
+    /// Adds the renderer's deferred samples, before the film is read or another renderer continues it.
+    fn finish_samples(&mut self) {
         let (Some(render), Some((_, renderer))) = (&mut self.render, &mut self.backend) else { return };
         let begin = Instant::now();
-        let outcome = render.collect(renderer.as_mut());
+        let outcome = render.finish_samples(renderer.as_mut());
         render.status.elapsed += begin.elapsed();
         if let Err(error) = outcome {
             self.give_up_backend(&error);
@@ -160,7 +160,7 @@ impl Worker {
     }
 
     fn take_film(&mut self) -> Option<Film> {
-        self.collect();
+        self.finish_samples();
         let Render { film, status, .. } = self.render.take()?;
         if !status.phase.is_over() {
             self.shared.publish(&Status { phase: Phase::Idle, ..status });

@@ -4,8 +4,8 @@
 
 use super::lanes::{Float, Lanes, Mask, V3, splat3};
 use super::sphere::{Nearest, Rays, signed_root};
-use crate::kernel::{BOX_MARGIN, BOX_WIDENING, COUNT_MASK, LEAST_COMPONENT, Node, STACK_SIZE};
-use crate::prepared::hierarchy::{Hierarchy, ORDER_SHIFT};
+use crate::kernel::{BOX_MARGIN, BOX_WIDENING, LEAST_COMPONENT, Node, STACK_SIZE};
+use crate::prepared::hierarchy::Hierarchy;
 
 /// Nodes still to be visited, at most one per level. The stack outlives each traversal, because clearing it every time
 /// would show in the run time.
@@ -58,16 +58,19 @@ pub fn misses_box<L: Lanes>(l: L, slabs: &Slabs<L>, node: &Node<L::Real>, limit:
     (leave * l.constant(BOX_WIDENING)).lt(enter)
 }
 
-/// The child that is nearer for most of the `active` rays, 0 or 1: one bit for each order of children that a node can
-/// have, [`Node::count`]. Kept in a register, since the next node's address depends on it.
+/// For each order of children that a node can have ([`Node::nearer_child`]), a bit: the child, 0 or 1, that most of the
+/// `active` rays reach first. Kept in a register, since the next node's address depends on it.
 #[inline(always)]
 fn near_children<L: Lanes>(l: L, rays: &Rays<L>, active: L::M) -> u32 {
     let d = rays.direction;
-    let half = active.bits().count_ones();
-    [d.x, d.y, d.z].into_iter().enumerate().fold(0, |bits, (axis, d)| {
-        let is_forward = 2 * (l.constant(0.0).lt(d) & active).bits().count_ones() >= half;
-        bits | if is_forward { 2 } else { 1 } << (2 * axis)
-    })
+    let count = active.bits().count_ones();
+    let mut near_children = 0;
+    for (axis, d) in [d.x, d.y, d.z].into_iter().enumerate() {
+        let forward = (l.constant(0.0).lt(d) & active).bits().count_ones();
+        let both_orders = if 2 * forward >= count { 0b10 } else { 0b01 };
+        near_children |= both_orders << (2 * axis);
+    }
+    near_children
 }
 
 /// Updates `nearest` with the nearest hits among the spheres of a hierarchy. Results matter only for `active` lanes.
@@ -93,9 +96,9 @@ pub fn traverse<L: Lanes>(
         let missed = misses_box(l, &slabs, node, limit);
         limit = next_limit;
         if missed.bits() & active_bits != active_bits {
-            let count = node.count & COUNT_MASK;
+            let count = node.sphere_count();
             if count == 0 {
-                let nearer = near_children >> (node.count >> ORDER_SHIFT) & 1;
+                let nearer = node.nearer_child(near_children);
                 stack[depth] = node.first + 1 - nearer;
                 index = node.first + nearer;
                 depth += 1;

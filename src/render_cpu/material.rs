@@ -1,8 +1,18 @@
 //! How a surface scatters a ray. (Book 1, sections 9 to 11.)
 //!
-//! Every material scatters a ray into the direction `along d + across n + spread u`, where `d` is the incoming
-//! direction, `n` the unit normal on the incoming side and `u` a uniform unit vector. Materials differ only in the
-//! three factors, so a packet of mixed materials takes one path through this code.
+//! Every material scatters a ray into the direction `along d + across n + |weight| u`, where `d` is the incoming
+//! direction, `n` the unit normal on the incoming side and `u` a uniform unit vector. Materials differ only in the three
+//! factors, so a packet of mixed materials takes one path through this code:
+//!
+//! | material         | along | across               | weight  |
+//! |------------------|-------|----------------------|---------|
+//! | Lambertian       | 0     | 1                    | 1       |
+//! | metal            | 1     | 2 cos θ              | −fuzz   |
+//! | glass, reflected | 1     | 2 cos θ              | −0      |
+//! | glass, refracted | η     | η cos θ − cos θ′     | −0      |
+//!
+//! θ is the angle of incidence, θ′ that of refraction, and η the ratio of their sines, sin θ′ / sin θ. The sign of the
+//! weight tells materials that reflect from Lambertian ones.
 //!
 //! Twin: shaders/material.wgsl
 
@@ -12,8 +22,8 @@ use crate::stages::DielectricLaws;
 
 /// A material as stored in a shading record.
 #[derive(Clone, Copy)]
-pub struct Surface<L: Lanes> {
-    /// Length of the unit vector's part; a negative sign (also on 0) marks a reflection.
+pub struct Material<L: Lanes> {
+    /// Weight of the unit vector; a negative sign (also on 0) marks a reflection.
     pub weight: L::F,
     /// Refraction index; 0 if not glass.
     pub refraction_index: L::F,
@@ -23,12 +33,30 @@ pub struct Surface<L: Lanes> {
     pub f0: L::F,
 }
 
+impl<L: Lanes> Material<L> {
+    /// Metal and glass.
+    #[inline(always)]
+    pub fn reflects(&self) -> L::M {
+        self.weight.is_negative()
+    }
+
+    #[inline(always)]
+    pub fn is_lambertian(&self, l: L) -> L::M {
+        l.constant(0.0).lt(self.weight)
+    }
+
+    #[inline(always)]
+    pub fn is_glass(&self, l: L) -> L::M {
+        l.constant(0.0).lt(self.refraction_index)
+    }
+}
+
 /// Extracts the materials of shading records.
 #[inline(always)]
-pub fn surface_of<L: Lanes>(
+pub fn material_of<L: Lanes>(
     record: &impl LoadShading<L::Real, Number = L::F, Vector = V3<L::F>>,
-) -> Surface<L> {
-    Surface {
+) -> Material<L> {
+    Material {
         weight: record.weight(),
         refraction_index: record.refraction_index(),
         inverse_index: record.inverse_index(),
@@ -36,8 +64,8 @@ pub fn surface_of<L: Lanes>(
     }
 }
 
-/// The result of scattering.
-pub struct Scatter<L: Lanes> {
+/// A scattered ray.
+pub struct Scattered<L: Lanes> {
     /// The scattered direction, not normalised.
     pub direction: V3<L::F>,
     /// Whether it passes through the surface.
@@ -46,6 +74,16 @@ pub struct Scatter<L: Lanes> {
     pub is_metal: L::M,
     /// Sine of the refracted angle over sine of the incident angle, where the ray refracts.
     pub ratio: L::F,
+}
+
+impl<L: Lanes> Scattered<L> {
+    /// Stands for scattered rays where no lane needs one.
+    #[inline(always)]
+    pub fn unused(l: L) -> Self {
+        let zero = l.constant(0.0);
+        let direction = V3 { x: zero, y: zero, z: zero };
+        Scattered { direction, refracts: l.mask(0), is_metal: l.mask(0), ratio: zero }
+    }
 }
 
 /// The angle at which a ray meets a surface.
@@ -73,47 +111,49 @@ pub fn incidence_of_sine2<L: Lanes>(l: L, sine2: L::F) -> Incidence<L> {
 
 /// Scatters at a mirror, metal or Lambertian surface, or at a dielectric if `GLASS` is set.
 ///
-/// `front` is true where the ray comes from outside; `coin` is uniform in `[0, 1)`.
+/// `front_face` is true where the ray comes from outside; `coin` is uniform in `[0, 1)`.
 #[inline(always)]
 pub fn scatter<L: Lanes, const GLASS: bool>(
     l: L,
-    surface: &Surface<L>,
+    material: &Material<L>,
     laws: DielectricLaws,
     direction: V3<L::F>,
     normal: V3<L::F>,
     incidence: &Incidence<L>,
-    front: L::M,
+    front_face: L::M,
     unit: V3<L::F>,
     coin: L::F,
-) -> Scatter<L> {
+) -> Scattered<L> {
     let (zero, one) = (l.constant(0.0), l.constant(1.0));
     let &Incidence { cosine, sine2 } = incidence;
-    let reflects = surface.weight.is_negative();
+    let reflects = material.reflects();
     let mut along = reflects.select(one, zero);
     let mut across = reflects.select(cosine + cosine, one);
     let mut refracts = l.mask(0);
-    let mut is_metal = reflects;
     let mut ratio = one;
-    let is_glass = zero.lt(surface.refraction_index);
+    let is_glass = material.is_glass(l);
     if GLASS && !is_idle::<L>(is_glass) {
-        ratio = front.select(surface.inverse_index, surface.refraction_index);
+        ratio = front_face.select(material.inverse_index, material.refraction_index);
         // Squared sine of the refraction angle: above 1, Snell's law has no solution.
         let refracted_sine2 = ratio * ratio * sine2;
-        let mut kept = is_glass;
+        refracts = is_glass;
         if laws != DielectricLaws::RefractOnly {
-            kept = kept & !one.lt(refracted_sine2);
+            refracts = refracts & !one.lt(refracted_sine2);
         }
         if laws == DielectricLaws::Schlick {
-            kept = kept & !coin.lt(reflectance(l, cosine, surface.f0));
+            refracts = refracts & !coin.lt(reflectance(l, cosine, material.f0));
         }
         let inner_cosine = (one - refracted_sine2).abs().sqrt();
-        refracts = kept;
         along = refracts.select(ratio, along);
         across = refracts.select(ratio.mul_add(cosine, -inner_cosine), across);
-        is_metal = is_metal & !is_glass;
     }
     let smooth = direction.mul_add(along, normal.scale(across));
-    Scatter { direction: unit.mul_add(surface.weight.abs(), smooth), refracts, is_metal, ratio }
+    Scattered {
+        direction: unit.mul_add(material.weight.abs(), smooth),
+        refracts,
+        is_metal: if GLASS { reflects & !is_glass } else { reflects },
+        ratio,
+    }
 }
 
 /// The refracted direction, not normalised, from the part of the incoming direction `across` the normal. This form

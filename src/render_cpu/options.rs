@@ -1,4 +1,4 @@
-//! What can be asked of a CPU backend.
+//! Options of a CPU backend.
 
 use super::Isa;
 
@@ -13,7 +13,7 @@ pub struct CpuOptions {
     pub threads: Option<usize>,
     /// Whether the threads yield to other work, such as a window. Linux only.
     pub low_priority: bool,
-    /// Whether every job gets the general kernel, which leaves nothing out, to measure the gain of leaving things out.
+    /// Whether every job gets the general kernel, to measure the gain of specialisation.
     pub general: bool,
     /// Panics in the middle of a tile, after this many other tiles (fault injection).
     pub panics_after: Option<u64>,
@@ -23,7 +23,7 @@ pub struct CpuOptions {
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 pub enum CpuError {
     /// The processor does not support the level.
-    #[error("this processor has no {isa}; it has {}", list(available))]
+    #[error("this processor does not support {isa}; it supports {}", list(available))]
     Isa {
         /// The requested level.
         isa: Isa,
@@ -31,7 +31,7 @@ pub enum CpuError {
         available: Vec<Isa>,
     },
     /// The level has no kernel for this lane count.
-    #[error("level {isa} has no {lanes} lanes; choose one of {}", list(available))]
+    #[error("level {isa} has no kernel for {lanes} lanes; choose one of {}", list(available))]
     Lanes {
         /// The requested lane count.
         lanes: usize,

@@ -1,5 +1,5 @@
-//! A pass over a film: its tiles are traced by all threads, and a pass that breaks off is taken away again. A trial
-//! traces a few tiles to learn how long a pass will take.
+//! A pass over a film: its tiles are traced by all threads, and a pass that breaks off is withdrawn. An
+//! estimate traces a few tiles to learn how long a pass will take.
 
 use super::broadcast::BroadcastScene;
 use super::kernels::Kernel;
@@ -21,28 +21,28 @@ pub(super) enum Prepared {
     Double(Box<BroadcastScene<f64>>, Kernel<f64>),
 }
 
-/// What a pass traces, and how.
+/// A pass.
 #[derive(Clone, Copy)]
 pub(super) struct Pass<'a> {
     pub side: u32,
     pub range: &'a Range<u64>,
     pub cancel: &'a AtomicBool,
-    /// Set if tiles need not be traced any more, provided that little has been.
+    /// Leaves out the other tiles once a stop is requested, if little has been traced.
     pub stop: &'a StopRequest<'a>,
     pub purpose: Purpose<'a>,
 }
 
-/// Decides, when a stop is wanted, whether the tiles of a pass are finished or taken away again.
+/// Decides, when a stop is requested, whether a pass is finished or withdrawn.
 pub(super) struct StopRequest<'a> {
-    wanted: &'a AtomicBool,
+    requested: &'a AtomicBool,
     tiles_begun: AtomicUsize,
     is_given_up: OnceLock<bool>,
 }
 
 impl<'a> StopRequest<'a> {
-    /// A stop that comes when `wanted` is set.
-    pub fn when(wanted: &'a AtomicBool) -> Self {
-        StopRequest { wanted, tiles_begun: AtomicUsize::new(0), is_given_up: OnceLock::new() }
+    /// A stop that is requested by setting `requested`.
+    pub fn when(requested: &'a AtomicBool) -> Self {
+        StopRequest { requested, tiles_begun: AtomicUsize::new(0), is_given_up: OnceLock::new() }
     }
 
     /// Whether the pass was given up.
@@ -50,28 +50,28 @@ impl<'a> StopRequest<'a> {
         self.is_given_up.get().copied().unwrap_or(false)
     }
 
-    /// Whether the next of `tile_count` tiles is left out. To take a tile away is to trace it again, so a pass is given up
-    /// if fewer than half of its tiles have begun.
+    /// Whether the next of `tile_count` tiles is left out. To withdraw a tile, it is traced again, so a pass is given up if
+    /// fewer than half of its tiles have begun.
     fn leaves_out(&self, tile_count: usize) -> bool {
         let begun = self.tiles_begun.fetch_add(1, Ordering::Relaxed);
-        self.wanted.load(Ordering::Relaxed) && *self.is_given_up.get_or_init(|| 2 * begun < tile_count)
+        self.requested.load(Ordering::Relaxed) && *self.is_given_up.get_or_init(|| 2 * begun < tile_count)
     }
 }
 
-/// What a pass does with the sums of its blocks.
+/// The use of the sums of a pass.
 #[derive(Clone, Copy)]
 pub(super) enum Purpose<'a> {
     /// Adds them to the film.
     Add,
     /// Subtracts the first blocks of each tile from the film: how many, by tile.
-    TakeAway(&'a [u64]),
-    /// Drops them, and traces only one of so many tiles.
-    Try(usize),
+    Withdraw(&'a [u64]),
+    /// Drops them, and traces only one tile in `one_in`.
+    Estimate { one_in: usize },
 }
 
-/// Whether a trial of one tile in `one_in` traces tile `number`. These tiles are spread over the picture; there is at least
-/// one.
-fn is_tried(number: usize, tile_count: usize, one_in: usize) -> bool {
+/// Whether an estimate from one tile in `one_in` traces tile `number`. These tiles are spread over the picture; there is at
+/// least one.
+fn is_probed(number: usize, tile_count: usize, one_in: usize) -> bool {
     number % one_in == tile_count.min(one_in) / 2
 }
 
@@ -85,7 +85,7 @@ pub(super) struct TracedTile {
     pub expected: u64,
     /// The message of the tracer's panic, if it panicked.
     pub panic: Option<String>,
-    /// The time that it took a thread.
+    /// Wall time of the tile.
     pub took: Duration,
 }
 
@@ -95,7 +95,7 @@ impl TracedTile {
     }
 }
 
-/// What traces passes.
+/// Traces passes.
 #[derive(Clone, Copy)]
 pub(super) struct PassTracer<'a> {
     pub threads: &'a rayon::ThreadPool,
@@ -113,20 +113,20 @@ impl PassTracer<'_> {
         }
     }
 
-    /// Removes from the film what an incomplete pass has added; `false` if that fails. A sample is a pure function, so
+    /// Subtracts from the film what an incomplete pass has added; `false` if that fails. A sample is a pure function, so
     /// tracing it again gives the values to subtract. A pass that succeeds pays nothing for this.
-    pub fn take_away(&self, pass: Pass, traced: &[TracedTile], film: &mut Film) -> bool {
+    pub fn withdraw(&self, pass: Pass, traced: &[TracedTile], film: &mut Film) -> bool {
         let added: Vec<u64> = traced.iter().map(|tile| tile.finished).collect();
         let never = AtomicBool::new(false);
-        let (purpose, stop) = (Purpose::TakeAway(&added), &StopRequest::when(&never));
+        let (purpose, stop) = (Purpose::Withdraw(&added), &StopRequest::when(&never));
         let again = self.trace(Pass { purpose, cancel: &never, stop, ..pass }, film);
         again.iter().zip(&added).all(|(tile, added)| tile.finished >= *added)
     }
 
-    /// Estimates the time of a pass from some of its tiles; `None` if one of them failed. The film stays as it is.
-    pub fn try_out(&self, pass: Pass, one_in: usize, film: &mut Film) -> Option<Duration> {
+    /// Estimates the time of a pass from some of its tiles; `None` if one of them failed. The film is unchanged.
+    pub fn estimate_time(&self, pass: Pass, film: &mut Film) -> Option<Duration> {
         let tile_count = film.width().div_ceil(pass.side) * film.height().div_ceil(pass.side);
-        let traced = self.trace(Pass { purpose: Purpose::Try(one_in), ..pass }, film);
+        let traced = self.trace(pass, film);
         let share = traced.len() as f64 / f64::from(tile_count);
         let took: Duration = traced.iter().map(|tile| tile.took).sum();
         let is_whole = !traced.is_empty() && traced.iter().all(TracedTile::is_whole);
@@ -144,10 +144,11 @@ impl PassTracer<'_> {
         let blocks = RefillBlock::of_range(pass.range.clone(), settings, prepared.prepared.block_limit);
         let is_first = film.sample_count() == 0 && matches!(pass.purpose, Purpose::Add);
         let mut tiles = tiles(film.halves_mut(), settings.width, pass.side);
-        if let Purpose::Try(one_in) = pass.purpose {
+        if let Purpose::Estimate { one_in } = pass.purpose {
             let count = tiles.len();
-            let tried = tiles.into_iter().enumerate().filter(|(number, _)| is_tried(*number, count, one_in));
-            tiles = tried.map(|(_, tile)| tile).collect();
+            let probed =
+                tiles.into_iter().enumerate().filter(|(number, _)| is_probed(*number, count, one_in));
+            tiles = probed.map(|(_, tile)| tile).collect();
         }
         let mut orders: Vec<RefillOrder> = Vec::new();
         for tile in &tiles {
@@ -168,9 +169,9 @@ impl PassTracer<'_> {
             let mut work = match pass.purpose {
                 Purpose::Add if self.is_to_panic() => work.sabotaged(),
                 Purpose::Add => work,
-                Purpose::TakeAway(added) if added[index] == 0 => return traced,
-                Purpose::TakeAway(added) => work.taking_away(added[index]),
-                Purpose::Try(_) => work.taking_away(0),
+                Purpose::Withdraw(added) if added[index] == 0 => return traced,
+                Purpose::Withdraw(added) => work.withdrawing(added[index]),
+                Purpose::Estimate { .. } => work.withdrawing(0),
             };
             if pass.cancel.load(Ordering::Relaxed) || pass.stop.leaves_out(tile_count) {
                 return traced;
@@ -210,7 +211,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_trial_needs_few_tiles() {
+    fn estimate_needs_few_tiles() {
         for (tile_count, one_in, expected) in [
             (0, 16, vec![]),
             (1, 16, vec![0]),
@@ -219,19 +220,19 @@ mod tests {
             (91, 16, vec![8, 24, 40, 56, 72, 88]),
             (91, 128, vec![45]),
         ] {
-            let tried = (0..tile_count).filter(|number| is_tried(*number, tile_count, one_in));
-            assert_eq!(tried.collect::<Vec<usize>>(), expected, "of {tile_count}");
+            let probed = (0..tile_count).filter(|number| is_probed(*number, tile_count, one_in));
+            assert_eq!(probed.collect::<Vec<usize>>(), expected, "of {tile_count}");
         }
     }
 
     #[test]
-    fn a_pass_is_given_up_if_fewer_than_half_of_its_tiles_have_begun() {
+    fn pass_is_given_up_before_half_of_its_tiles_have_begun() {
         for (begun, is_given_up) in [(0, true), (1, true), (2, true), (3, false), (4, false)] {
-            let wanted = AtomicBool::new(false);
-            let stop = StopRequest::when(&wanted);
+            let requested = AtomicBool::new(false);
+            let stop = StopRequest::when(&requested);
             (0..begun).for_each(|_| assert!(!stop.leaves_out(5)));
-            assert!(!stop.is_given_up(), "nobody wanted it");
-            wanted.store(true, Ordering::Relaxed);
+            assert!(!stop.is_given_up(), "no stop was requested");
+            requested.store(true, Ordering::Relaxed);
             // The decision does not change when more tiles have been left out or begun.
             (begun..5).for_each(|_| assert_eq!(stop.leaves_out(5), is_given_up, "after {begun} of 5"));
             assert_eq!(stop.is_given_up(), is_given_up, "after {begun} of 5");
@@ -239,16 +240,19 @@ mod tests {
     }
 
     #[test]
-    fn a_tile_without_all_its_samples_is_named_by_its_corner() {
+    fn incomplete_tile_is_named_by_its_corner() {
         let (stats, took) = (TileStats::default(), Duration::ZERO);
         let tile = |finished| TracedTile { stats, finished, expected: 9, panic: None, took };
         // Tiles of 8 pixels in a picture of 20: three columns.
         let mut traced: Vec<TracedTile> = [9, 9, 9, 9, 4, 9].map(tile).into();
-        let told = what_is_missing(&traced, 8, 20).expect("samples are missing");
-        assert!(told.contains("of 9 blocks") && told.contains("pixel (8, 8) 4"), "{told}");
+        let reason = what_is_missing(&traced, 8, 20).expect("samples are missing");
+        assert!(reason.contains("of 9 blocks") && reason.contains("pixel (8, 8) 4"), "{reason}");
         assert_eq!(what_is_missing(&traced[..4], 8, 20), None);
         traced[2].panic = Some("a slip".to_owned());
-        let told = what_is_missing(&traced, 8, 20).expect("a panic");
-        assert!(told.starts_with("it panicked: a slip; of 9") && told.contains("pixel (16, 0)"), "{told}");
+        let reason = what_is_missing(&traced, 8, 20).expect("a panic");
+        assert!(
+            reason.starts_with("it panicked: a slip; of 9") && reason.contains("pixel (16, 0)"),
+            "{reason}"
+        );
     }
 }

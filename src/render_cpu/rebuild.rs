@@ -5,19 +5,19 @@
 
 use super::priority::give_way;
 use crate::job::render::{RenderJob, TRACING_BYTES_PER_SPHERE};
-use crate::prepared::PreparedScene;
+use crate::prepared::{HierarchySource, PreparedScene};
 use crate::system::memory;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
 /// A better hierarchy is begun after tracing for this many times as long as the first one took to build, divided by the
 /// number of threads. It takes 4 to 15 times as long to build as the first one, on a thread of its own, and saves 7 to 22 %
-/// of the time (docs/benchmarks.md). By then, what it costs is about what it would have saved.
+/// of the time (docs/benchmarks.md). By then, its cost is about the time that it would have saved.
 const PATIENCE: u32 = 80;
 
-/// Whether a better hierarchy is wanted, in work or in use.
+/// State of the better hierarchy: to be built, in work or in use.
 pub(super) struct Rebuild {
-    /// How long the first hierarchy took, and how many times as long tracing goes on before a better one is begun.
+    /// Time of building the first hierarchy, and the multiple of it that is traced before a better one is begun.
     first: Duration,
     patience: u32,
     /// How long paths have been traced with the first hierarchy.
@@ -39,12 +39,12 @@ impl Rebuild {
         }
     }
 
-    /// Notes that another scene has been prepared, if it was.
+    /// Notes that a scene has been prepared, perhaps with the hierarchy of the one before.
     pub fn note_prepared(&mut self, prepared: &PreparedScene<f32>) {
-        let is_kept = prepared.hierarchy_time.is_zero();
+        let is_kept = prepared.hierarchy_source == HierarchySource::Kept;
         let is_improvable = prepared.hierarchy.as_ref().is_some_and(|hierarchy| hierarchy.is_improvable());
         if !is_kept || !is_improvable {
-            (self.first, self.traced) = (prepared.hierarchy_time, Duration::ZERO);
+            (self.first, self.traced) = (prepared.hierarchy_source.time(), Duration::ZERO);
             self.is_settled = !is_improvable;
         }
     }
@@ -73,7 +73,7 @@ impl Rebuild {
             PreparedScene::thorough(&job_then)
         };
         let fits = memory::check(|| "a better hierarchy".to_owned(), bytes, "").is_ok();
-        // Without memory or a thread for it, the first hierarchy does.
+        // Without memory or a thread for it, the first hierarchy suffices.
         let thread = fits.then(|| std::thread::Builder::new().name("rebuild".to_owned()).spawn(build).ok());
         self.building = thread.flatten().map(|thread| (job.clone(), thread));
         self.is_settled = self.building.is_none();
@@ -84,7 +84,7 @@ impl Rebuild {
     pub fn take_built(&mut self, job: &RenderJob) -> Option<PreparedScene<f32>> {
         let (job_then, thread) = self.building.take_if(|(_, thread)| thread.is_finished())?;
         let Ok(mut prepared) = thread.join() else {
-            // The panic has been reported. Another try would end alike, and the first hierarchy does.
+            // The panic has been reported. Another try would fail, too, and the first hierarchy suffices.
             self.is_settled |= job_then.scene() == job.scene();
             return None;
         };
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn a_long_render_gets_a_better_hierarchy_and_the_same_film() {
+    fn long_render_gets_better_hierarchy_and_same_film() {
         let job = field(21_000);
         let (film, first) = expected(&job);
         let mut renderer = renderer(0);
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hierarchy_of_another_scene_is_dropped() {
+    fn hierarchy_of_another_scene_is_dropped() {
         let (job, other) = (field(21_000), field(22_000));
         let mut renderer = renderer(0);
         let never = AtomicBool::new(false);
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_builder_that_panics_is_not_started_again() {
+    fn panicking_builder_is_not_restarted() {
         let job = field(21_000);
         let mut renderer = renderer(0);
         renderer.prepare(&job, &AtomicBool::new(false)).unwrap();
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn a_better_hierarchy_is_begun_once_the_threads_have_traced_80_times_as_long() {
+    fn better_hierarchy_is_begun_after_80_build_times() {
         let job = field(60);
         let prepared = PreparedScene::<f32>::new(&job);
         let second = Duration::from_secs(1);

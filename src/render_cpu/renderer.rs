@@ -10,7 +10,10 @@ use super::rebuild::Rebuild;
 use super::tiles::tile_side;
 use super::work::TileStats;
 use crate::film::{Film, FilmError};
-use crate::job::render::{BackendInfo, KernelInfo, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
+use crate::job::render::{
+    BackendInfo, Control, Diagnostics, KernelInfo, Outcome, RenderError, RenderJob, Renderer, Stats,
+    TileOccupancy,
+};
 use crate::kernel::{Features, Real, parts};
 use crate::prepared::PreparedScene;
 use std::ops::Range;
@@ -101,17 +104,13 @@ impl Renderer for CpuRenderer {
         }
     }
 
-    fn kernel(&self) -> KernelInfo {
-        let (features, hierarchy_time) = match &self.prepared {
-            Some(Prepared::Single(traced, _)) => (traced.prepared.features, traced.prepared.hierarchy_time),
-            Some(Prepared::Double(traced, _)) => (traced.prepared.features, traced.prepared.hierarchy_time),
-            None => return KernelInfo::default(),
-        };
-        let offered = |(isa, lanes)| kernels::offered(isa, lanes, self.wanted_parts(&features));
-        let contents = self.packets.map_or(parts::ALL, offered);
-        let (present, needed) = (parts::describe(contents), parts::describe(features.parts()));
-        let about = if needed == present { present } else { format!("{present} (needed: {needed})") };
-        KernelInfo { about, left_out: parts::left_out(contents), hierarchy_time }
+    fn diagnostics(&self) -> Diagnostics {
+        Diagnostics {
+            kernel: self.kernel(),
+            tile_occupancy: self.packets.map(|_| self.occupancy.clone()),
+            device_time: None,
+            stops_early: true,
+        }
     }
 
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
@@ -150,41 +149,24 @@ impl Renderer for CpuRenderer {
         std::mem::take(&mut self.messages)
     }
 
-    fn tile_occupancy(&self) -> Option<TileOccupancy> {
-        self.packets.map(|_| self.occupancy.clone())
-    }
-
-    fn try_out(&mut self, film: &mut Film, one_in: usize, cancel: &AtomicBool) -> Option<Duration> {
+    fn estimate_sample_time(&mut self, one_in: usize, cancel: &AtomicBool) -> Option<Duration> {
+        let settings = *self.job.as_ref()?.settings();
+        let mut film = Film::try_new(settings.width, settings.height, settings.half_count()).ok()?;
         let side = tile_side(film.width(), film.height(), self.threads.current_num_threads());
         let count = film.halves().len() as u64;
         let stop = StopRequest::when(cancel);
-        let pass = Pass { side, range: &(0..count), cancel, stop: &stop, purpose: Purpose::Try(one_in) };
-        Some(self.pass_tracer()?.try_out(pass, one_in, film)? / count as u32)
+        let pass =
+            Pass { side, range: &(0..count), cancel, stop: &stop, purpose: Purpose::Estimate { one_in } };
+        Some(self.pass_tracer()?.estimate_time(pass, &mut film)? / count as u32)
     }
 
-    fn accumulate(
+    fn advance(
         &mut self,
         job: &RenderJob,
         range: Range<u64>,
         film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        let never = AtomicBool::new(false);
-        Ok(self.advance_unless(job, range, film, cancel, &never)?.unwrap_or_default())
-    }
-
-    fn heeds_stop(&self) -> bool {
-        true
-    }
-
-    fn advance_unless(
-        &mut self,
-        job: &RenderJob,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-        stop: &AtomicBool,
-    ) -> Result<Option<Stats>, RenderError> {
+        &Control { cancel, stop, .. }: &Control,
+    ) -> Result<Outcome, RenderError> {
         self.prepare(job, cancel)?;
         self.take_better_hierarchy(job);
         if let Some(range) = film.samples().overlap(&range) {
@@ -204,10 +186,10 @@ impl Renderer for CpuRenderer {
         }
         if let Some(reason) = what_is_missing(&traced, side, film.width()) {
             let backend = self.info().name;
-            let is_taken_away = tracer.take_away(pass, &traced, film);
-            return match (is_taken_away, stop.is_given_up()) {
+            let is_withdrawn = tracer.withdraw(pass, &traced, film);
+            return match (is_withdrawn, stop.is_given_up()) {
                 (false, _) => Err(RenderError::FilmLost { backend, reason }),
-                (true, true) => Ok(None),
+                (true, true) => Ok(Outcome::Withdrawn),
                 (true, false) => Err(RenderError::Backend { backend, reason }),
             };
         }
@@ -218,7 +200,7 @@ impl Renderer for CpuRenderer {
         self.note_occupancy(side, film.width().div_ceil(side), &traced);
         let trace = start.elapsed();
         self.begin_better_hierarchy(job, trace);
-        Ok(Some(Stats {
+        Ok(Outcome::from(Stats {
             paths,
             rays: tiles.rays,
             rejected: tiles.rejected,
@@ -230,6 +212,19 @@ impl Renderer for CpuRenderer {
 }
 
 impl CpuRenderer {
+    fn kernel(&self) -> KernelInfo {
+        let (features, hierarchy) = match &self.prepared {
+            Some(Prepared::Single(traced, _)) => (traced.prepared.features, traced.prepared.hierarchy_source),
+            Some(Prepared::Double(traced, _)) => (traced.prepared.features, traced.prepared.hierarchy_source),
+            None => return KernelInfo::default(),
+        };
+        let offered = |(isa, lanes)| kernels::offered(isa, lanes, self.wanted_parts(&features));
+        let contents = self.packets.map_or(parts::ALL, offered);
+        let (present, needed) = (parts::describe(contents), parts::describe(features.parts()));
+        let about = if needed == present { present } else { format!("{present} (needed: {needed})") };
+        KernelInfo { about, left_out: parts::left_out(contents), hierarchy_time: hierarchy.time() }
+    }
+
     fn pass_tracer(&self) -> Option<PassTracer<'_>> {
         let prepared = self.prepared.as_ref()?;
         Some(PassTracer { threads: &self.threads, prepared, tiles_to_panic: self.tiles_to_panic.as_ref() })
@@ -248,7 +243,7 @@ impl CpuRenderer {
         if self.general { parts::ALL } else { features.parts() }
     }
 
-    /// Goes on with the better hierarchy if it has been built.
+    /// Switches to the better hierarchy once it is built.
     fn take_better_hierarchy(&mut self, job: &RenderJob) {
         if let Some(Prepared::Single(broadcast, _)) = &mut self.prepared
             && let Some(better) = self.rebuild.take_built(job)
@@ -257,7 +252,7 @@ impl CpuRenderer {
         }
     }
 
-    /// Begins to build a better hierarchy if tracing has gone on for long.
+    /// Begins to build a better hierarchy after long tracing.
     fn begin_better_hierarchy(&mut self, job: &RenderJob, traced: Duration) {
         if let Some(Prepared::Single(broadcast, _)) = &self.prepared {
             let threads = self.threads.current_num_threads();

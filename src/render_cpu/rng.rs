@@ -3,13 +3,14 @@
 //! [`laine_karras`] and [`pascal`] work on reversed bits, where Owen scrambling is an integer hash and the first Sobol
 //! dimension is the index itself. Scrambling the reversed index shuffles the sequence within each aligned power-of-two
 //! block and moves the block as a whole. The pair `(u, pascal(u))` is then a point of a moved Sobol net. Every aligned
-//! block of samples is such a net, and blocks of different bounces and pixels are independent.
+//! block of samples is such a net. The first rays of a path share a shuffle, so that they are evenly distributed together;
+//! blocks of later bounces and of different pixels are independent.
 //!
 //! Twin: shaders/rng.wgsl
 
-use super::lanes::Lanes;
+use super::lanes::{Lanes, Mask, Unsigned};
 use crate::job::render::{RenderSettings, SamplerKind};
-use crate::kernel::sampling::{GOLDEN_RATIO, HalfKey, LENS_BLOCK};
+use crate::kernel::sampling::{FIRST_REARRANGEMENT, HalfKey, SECOND_REARRANGEMENT, stream_stride};
 
 /// Hashes 32 bits to 32 bits; a bijection: [`crate::kernel::sampling::mix32`].
 #[inline(always)]
@@ -60,19 +61,13 @@ pub fn pascal<L: Lanes>(l: L, u: L::U) -> L::U {
     u ^ ((u & l.splat_u(0x5555_5555)) << 1)
 }
 
-/// A pair of Sobol coordinates. `counter` is the reversed sample index; `stream` selects the block of dimensions and is
-/// the pixel's key plus the golden ratio for each bounce.
+/// A pair of Sobol coordinates from a shuffled index. Each even `rearrangement` gives another order of the same net, in
+/// which each bit is flipped or kept depending on the bits below it. Pairs with different ones form a point of more
+/// dimensions.
 #[inline(always)]
-pub fn sobol_pair<L: Lanes>(l: L, counter: L::U, stream: L::U) -> [L::U; 2] {
-    let u = laine_karras(l, counter, mix32(l, stream));
+pub fn sobol_pair<L: Lanes>(l: L, index: L::U, rearrangement: L::U) -> [L::U; 2] {
+    let u = index ^ (index * rearrangement);
     [u, pascal(l, u)]
-}
-
-/// The stream of the second pair of dimensions of the same ray, which supplies the point in the pixel when the first
-/// pair is used for the lens.
-#[inline(always)]
-pub fn lens_stream_of<L: Lanes>(l: L, stream: L::U) -> L::U {
-    stream + l.splat_u(LENS_BLOCK.wrapping_mul(GOLDEN_RATIO))
 }
 
 /// The stream of a pixel's camera rays: 0 for the sampler that hashes the pixel itself.
@@ -84,14 +79,16 @@ pub fn sampler_key<L: Lanes>(l: L, half_key: HalfKey, pixel: L::U) -> L::U {
     }
 }
 
-/// Two pairs of numbers for a path's next ray; the second pair matters only `with_lens`. `counter` selects the sample,
-/// `stream` the pixel, half and ray: see [`crate::kernel::sampling::stream_stride`].
+/// Two pairs of numbers for a path's next ray; the second pair, which matters only `with_lens`, is the point in the pixel
+/// of a camera ray. `counter` selects the sample, `key` the pixel and half, and `stream` the ray too: see
+/// [`crate::kernel::sampling::stream_stride`].
 #[inline(always)]
 pub fn numbers<L: Lanes>(
     l: L,
     settings: &RenderSettings,
     pixel: L::U,
     counter: L::U,
+    key: L::U,
     stream: L::U,
     with_lens: bool,
 ) -> [[L::U; 2]; 2] {
@@ -101,8 +98,16 @@ pub fn numbers<L: Lanes>(
             [[a, b], [c, d]]
         }
         SamplerKind::Sobol => {
-            let first = sobol_pair(l, counter, stream);
-            let second = if with_lens { sobol_pair(l, counter, lens_stream_of(l, stream)) } else { first };
+            let stride = stream_stride(SamplerKind::Sobol);
+            let is_first = stream.eq(key + l.splat_u(stride));
+            let is_second = stream.eq(key + l.splat_u(stride.wrapping_mul(2)));
+            let stream = (is_first | is_second).select(key, stream);
+            let index = laine_karras(l, counter, mix32(l, stream));
+            let second_rearrangement = l.splat_u(SECOND_REARRANGEMENT);
+            let rearrangement =
+                is_first.select(l.splat_u(FIRST_REARRANGEMENT), l.keep(is_second, second_rearrangement));
+            let first = sobol_pair(l, index, rearrangement);
+            let second = if with_lens { sobol_pair(l, index, second_rearrangement) } else { first };
             [first, second]
         }
     }

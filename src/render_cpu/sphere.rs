@@ -3,7 +3,7 @@
 //! Twin: shaders/sphere.wgsl
 
 use super::lanes::{Float, Key, Lanes, Mask, Unsigned, V3, Wide, WideU, is_idle, load3, splat3};
-use crate::kernel::{AnchoredSphere, Roots};
+use crate::kernel::{AnchoredSphere, Real, Roots};
 pub use crate::kernel::{EYE, NONE};
 
 /// Rays being traced. Directions have length 1.
@@ -68,7 +68,7 @@ impl<R: Copy> BroadcastSphere<R> {
     }
 }
 
-/// The distance to a sphere, which is no hit for some of the lanes.
+/// The distance to a sphere; some lanes may miss it.
 #[derive(Clone, Copy)]
 pub struct Candidate<L: Lanes> {
     /// Distance, encoded as [`Lanes::key`].
@@ -78,7 +78,7 @@ pub struct Candidate<L: Lanes> {
 }
 
 impl<L: Lanes> Candidate<L> {
-    /// The distance, encoded as [`Lanes::key`], or 0, which is no hit, where the ray leaves the sphere.
+    /// The distance, encoded as [`Lanes::key`], or 0, which stands for a miss, where the ray leaves the sphere.
     #[inline(always)]
     pub fn key(self, l: L) -> L::Key {
         l.exclude(self.excluded, self.key)
@@ -187,18 +187,20 @@ pub fn nearest_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> Cand
     nearest_end(rays, sphere.number, chord(l, rays, sphere))
 }
 
-/// Distance to a sphere of a hierarchy, given as centre and squared radius, which is negative if only the nearer root
-/// counts. Of two spheres at the same place, a ray that leaves one must not meet the far side of the other.
+/// Whether only the nearer root of a sphere of a hierarchy counts: its squared radius is negative.
+#[inline(always)]
+fn has_one_root<R: Real>(sphere: &[R; 4]) -> bool {
+    sphere[3] < R::default()
+}
+
+/// Distance to a sphere of a hierarchy, given as centre and squared radius. Of two spheres at the same place, a ray that
+/// leaves one must not meet the far side of the other.
 #[inline(always)]
 pub fn signed_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &[L::Real; 4], number: L::U) -> Candidate<L> {
     let signed = Spheres::splat(l, *sphere, number);
     // What both kinds share comes before the jump, so that the broadcasts are memory operands.
     let chord = chord(l, rays, &Spheres { radius2: signed.radius2.abs(), ..signed });
-    if sphere[3] < L::Real::default() {
-        near_end(rays, number, chord)
-    } else {
-        nearest_end(rays, number, chord)
-    }
+    if has_one_root(sphere) { near_end(rays, number, chord) } else { nearest_end(rays, number, chord) }
 }
 
 /// Distance to the nearer end of a [`chord`].
@@ -210,7 +212,7 @@ fn near_end<L: Lanes>(rays: &Rays<L>, number: L::U, (h, s): (L::F, L::F)) -> Can
 /// Distance to the nearest end of a [`chord`] in front of the ray.
 #[inline(always)]
 fn nearest_end<L: Lanes>(rays: &Rays<L>, number: L::U, (h, s): (L::F, L::F)) -> Candidate<L> {
-    // A ray that enters the sphere from its surface travels the chord 2h. For it, h + s is not negative and hence no hit.
+    // A ray that enters the sphere from its surface travels the chord 2h. For it, h + s is not negative and hence a miss.
     let s = rays.inside.eq(number).select(h.abs(), s);
     // The negation comes last, so that a chord of length 0 is a hit at -0.
     let (near, far) = (L::key(h + s), L::key(-(s - h)));

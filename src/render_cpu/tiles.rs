@@ -3,7 +3,7 @@
 use super::work::TileRows;
 use crate::film::PixelSum;
 
-/// Side of a tile in pixels, if the picture has enough of them.
+/// Side of a tile in pixels in a large picture.
 const SIDE: u32 = 64;
 
 /// Smallest side in pixels: in smaller tiles, lanes wait for the end of the tile longer than they work.
@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tiles_are_small_enough_for_all_threads_but_not_too_small() {
+    fn tile_side_follows_the_number_of_threads() {
         for (size, threads, expected) in [
             ([1920, 1080], 1, 64),
             ([128, 128], 1, 64),

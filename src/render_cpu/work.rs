@@ -65,7 +65,7 @@ impl RefillBlock {
     }
 }
 
-/// What a packet's lanes work on: a block of samples of a pixel each.
+/// The blocks of a packet's lanes, each of one pixel's samples.
 #[derive(Clone, Copy)]
 pub struct LaneBlocks<L: Lanes> {
     /// The sampler's counter, which selects the sample.
@@ -137,7 +137,7 @@ impl RefillOrder {
         self.places.len() - MAX_LANES
     }
 
-    /// As many pixels from number `first` on as a packet can have lanes. The last ones may be padding.
+    /// The next pixels from number `first` on, one for each possible lane. The last ones may be padding.
     #[inline(always)]
     fn row(&self, first: usize) -> &[u32; MAX_LANES] {
         const PADDING: &[u32; MAX_LANES] = &[0; MAX_LANES];
@@ -156,7 +156,7 @@ pub struct Work<'film> {
     next_place: usize,
     finished: u64,
     /// If set, this many blocks are subtracted from the film, and none is added.
-    taken_away: Option<u64>,
+    withdrawn: Option<u64>,
 }
 
 impl<'film> Work<'film> {
@@ -167,13 +167,13 @@ impl<'film> Work<'film> {
         corner: [u32; 2],
         rows: TileRows<'film>,
     ) -> Self {
-        Work { blocks, order, corner, rows, next_block: 0, next_place: 0, finished: 0, taken_away: None }
+        Work { blocks, order, corner, rows, next_block: 0, next_place: 0, finished: 0, withdrawn: None }
     }
 
     /// Subtracts the first `count` finished blocks from the film instead of adding all. A kernel finishes a tile's
     /// blocks in the same order every time, with the same sums.
-    pub fn taking_away(self, count: u64) -> Self {
-        Work { taken_away: Some(count), ..self }
+    pub fn withdrawing(self, count: u64) -> Self {
+        Work { withdrawn: Some(count), ..self }
     }
 
     /// Blocks whose sums are in the film, over all pixels.
@@ -197,16 +197,16 @@ impl<'film> Work<'film> {
         self
     }
 
-    /// Steps that lanes wait for a refill, at most. A refill takes nearly as long for one lane as for several, so it pays
-    /// to wait where refills are frequent; a lane with a single sample would wait as long as it works.
+    /// Maximum number of steps that lanes wait for a refill. A refill takes nearly as long for one lane as for several, so
+    /// waiting pays where refills are frequent; a lane with a single sample would wait as long as it works.
     pub fn pause(&self) -> u32 {
-        let samples: u32 = self.blocks.iter().map(|block| block.count).sum();
-        let per_block = samples.checked_div(self.blocks.len() as u32).unwrap_or(0);
+        let samples: u64 = self.blocks.iter().map(|block| u64::from(block.count)).sum();
+        let per_block = samples.checked_div(self.blocks.len() as u64).unwrap_or(0);
         u32::from((2..=8).contains(&per_block))
     }
 
-    /// Collects the sums of the lanes `done` and gives each of them its next block. `busy` are the lanes that have a
-    /// block, as bits. Returns the blocks, and the lanes that have one now.
+    /// Adds the sums of the lanes `done` to the film and gives each of them its next block. `busy` is the bit mask of the
+    /// lanes that have a block. Returns the blocks, and the new mask.
     #[inline(always)]
     pub fn refill<L: Lanes>(
         &mut self,
@@ -262,9 +262,9 @@ impl<'film> Work<'film> {
             let slot = slots[lane];
             let sums = [u64::from(red[lane]), u64::from(green[lane]), u64::from(blue[lane])];
             let pixel = &mut self.rows[(slot >> 16) as usize][(slot & 0xFFFF) as usize];
-            match self.taken_away {
+            match self.withdrawn {
                 None => pixel.add(PixelSum(sums)),
-                Some(count) if self.finished < count => take_away(pixel, sums),
+                Some(count) if self.finished < count => subtract(pixel, sums),
                 Some(_) => {}
             }
             self.finished += 1;
@@ -290,7 +290,7 @@ fn lowest(bits: u32, count: usize) -> u32 {
     bits & !above
 }
 
-fn take_away(pixel: &mut PixelSum, sums: [u64; 3]) {
+fn subtract(pixel: &mut PixelSum, sums: [u64; 3]) {
     for (all, part) in pixel.0.iter_mut().zip(sums) {
         *all = all.wrapping_sub(part);
     }
@@ -301,7 +301,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_pixel_has_its_turn_once() {
+    fn order_holds_every_pixel_once() {
         for [width, height] in [[1, 1], [3, 5], [8, 8], [64, 7], [256, 256]] {
             let order = RefillOrder::new(width, height);
             let mut places = order.places[..order.len()].to_vec();
@@ -322,5 +322,9 @@ mod tests {
         // Half of the samples belong to each half of the film.
         assert_eq!([0..2, 0..4, 0..8, 8..16, 0..16, 0..32, 0..256].map(pause), [0, 1, 1, 1, 1, 0, 0]);
         assert_eq!(pause(0..0), 0);
+        // More samples than 32 bits can count.
+        let full = RefillBlock::of_range(0..1 << 20, &settings, 1 << 10)[0];
+        let blocks = vec![RefillBlock { count: (1 << 23) + 4, ..full }; 1 << 9];
+        assert_eq!(Work::new(&blocks, &order, [0; 2], Vec::new()).pause(), 0);
     }
 }

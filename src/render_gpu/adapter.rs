@@ -9,7 +9,10 @@ pub const STORAGE_BUFFERS: u32 = 8;
 
 /// Number of threads that keep a software adapter busy. 1024 threads and 4096 were equally fast; a dispatch of the
 /// whole picture was a seventh slower.
-const BUSY_THREADS_OF_SOFTWARE: u64 = 4096;
+pub const BUSY_THREADS_OF_SOFTWARE: u64 = 4096;
+
+/// The smallest and the largest number of threads that a software adapter runs in step.
+pub const SOFTWARE_THREADS_IN_STEP: [u32; 2] = [8, 64];
 
 /// A description of an adapter, for lists and reports.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -72,11 +75,12 @@ impl AdapterInfo {
         }
     }
 
-    /// Number of threads that share a limit on loop turns: software counts the turns of all threads that run in step.
+    /// Number of threads that share a limit on iterations: software counts those of all threads that run in step.
     /// GPUs have no known limit.
     pub fn threads_in_step(&self) -> u32 {
         // Some adapters do not report a subgroup size; 8 threads fit a processor's registers.
-        if self.is_software { self.subgroup_size.clamp(8, 64) } else { 1 }
+        let [fewest, most] = SOFTWARE_THREADS_IN_STEP;
+        if self.is_software { self.subgroup_size.clamp(fewest, most) } else { 1 }
     }
 
     /// Number of threads that keep the adapter busy. A dispatch uses this many if it can, and then as many samples as

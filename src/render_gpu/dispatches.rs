@@ -2,9 +2,9 @@
 
 use super::device::Gpu;
 use super::failed;
-use super::layout::{GpuAside, GpuBlock, GpuDispatch, WORKGROUP_SIZE};
-use super::readback::{DispatchResult, Receipt};
-use super::scene::{TURN_LIMIT, turns_over_lists};
+use super::layout::{GpuBlock, GpuDispatch, GpuSuspendedPath, WORKGROUP_SIZE};
+use super::readback::{DispatchReadback, DispatchResult};
+use super::scene::{ITERATION_LIMIT, iterations_over_lists};
 use super::schedule::Budget;
 use crate::job::render::RenderError;
 use crate::kernel::Features;
@@ -17,36 +17,36 @@ use std::time::{Duration, Instant};
 /// Number of dispatches in flight across passes: while the host processes one, the device runs the other.
 const QUEUE_DEPTH: usize = 2;
 
-/// Most workgroups along one axis of a dispatch; WebGPU allows 65,535.
+/// Maximum number of workgroups along one axis of a dispatch; WebGPU allows 65,535.
 const GROUPS_ACROSS: u32 = 32_768;
 
-/// Most threads in a dispatch; each can put its path aside, in [`ASIDE_SIZE`] bytes.
+/// Maximum number of threads in a dispatch; each can suspend its path, in [`SUSPENDED_SIZE`] bytes.
 const THREAD_LIMIT: u64 = 1 << 20;
 
-/// Bytes in which a thread puts its path aside.
-const ASIDE_SIZE: u64 = size_of::<GpuAside>() as u64;
+/// Bytes of a suspended path.
+const SUSPENDED_SIZE: u64 = size_of::<GpuSuspendedPath>() as u64;
 
 /// Factor of the target time on a software adapter. Mesa's llvmpipe compiles a kernel anew for each dispatch, which takes
-/// about 6 ms, and keeps the memory: .7 MB for each of the book's last picture (Mesa 22.3).
+/// about 6 ms, and keeps the memory: 0.7 MB for each of the book's last picture (Mesa 22.3).
 const SOFTWARE_FACTOR: u32 = 10;
 
 /// Each time samples are missing, dispatches shrink by this many bits.
 pub(super) const CAUTION_SHIFT: u32 = 3;
 
-/// How often missing samples are traced again.
+/// Maximum number of times that missing samples are traced again.
 pub(super) const CAUTION_LIMIT: u32 = 3;
 
 /// Why a pass is incomplete.
-pub(super) enum Broken {
+pub(super) enum Incomplete {
     /// The device failed, or the pass was cancelled.
-    Ended(RenderError),
+    Failed(RenderError),
     /// Samples are missing although the device reported no fault. Describes how many and where.
     Short(String),
 }
 
-impl From<RenderError> for Broken {
+impl From<RenderError> for Incomplete {
     fn from(error: RenderError) -> Self {
-        Broken::Ended(error)
+        Incomplete::Failed(error)
     }
 }
 
@@ -56,11 +56,11 @@ pub(super) struct BoundDispatch {
     pub pipeline: wgpu::ComputePipeline,
     pub scene: wgpu::BindGroup,
     pub film: wgpu::BindGroup,
-    pub order_buffer: wgpu::Buffer,
+    pub parameters_buffer: wgpu::Buffer,
     pub blocks_buffer: wgpu::Buffer,
     pub counters: wgpu::Buffer,
     pub blocks: Arc<[GpuBlock]>,
-    pub order: GpuDispatch,
+    pub parameters: GpuDispatch,
     /// Threads times samples, the unit of the budget.
     pub paths: u64,
     /// Samples in the dispatch, over all pixels.
@@ -68,51 +68,51 @@ pub(super) struct BoundDispatch {
 }
 
 /// A submission that may not be done yet.
-struct UnderWay {
+struct InFlight {
     slot: usize,
     submission: wgpu::SubmissionIndex,
     submitted: Instant,
     dispatch: BoundDispatch,
     /// Samples finished by earlier rounds of this dispatch.
     finished: u64,
-    /// Whether its film is still needed.
-    is_wanted: bool,
+    /// Whether its samples are still needed.
+    is_needed: bool,
 }
 
 /// The buffers of one dispatch in flight.
 struct Slot {
-    receipt: Receipt,
-    aside: wgpu::Buffer,
-    /// Group 2: the buffer for paths that are put aside.
+    readback: DispatchReadback,
+    suspended: wgpu::Buffer,
+    /// Group 2: the buffer for suspended paths.
     group: wgpu::BindGroup,
-    /// Whether the buffer contains paths that are no longer needed.
-    is_littered: bool,
+    /// Whether the buffer may contain paths of an earlier dispatch. Only a resumed dispatch may read them.
+    holds_paths: bool,
 }
 
 impl Slot {
     fn new(gpu: &Gpu, size: u64) -> Result<Self, String> {
-        let (aside, group) = storage_of_aside(gpu, size)?;
-        Ok(Slot { receipt: Receipt::new(gpu)?, aside, group, is_littered: false })
+        let (suspended, group) = suspended_storage(gpu, size)?;
+        Ok(Slot { readback: DispatchReadback::new(gpu)?, suspended, group, holds_paths: false })
     }
 }
 
-fn storage_of_aside(gpu: &Gpu, size: u64) -> Result<(wgpu::Buffer, wgpu::BindGroup), String> {
+fn suspended_storage(gpu: &Gpu, size: u64) -> Result<(wgpu::Buffer, wgpu::BindGroup), String> {
     let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
-    let aside = gpu.buffer("paths put aside", size, usage)?;
-    let group = gpu.bind(&gpu.layouts.words, &[&aside]);
-    Ok((aside, group))
+    let suspended = gpu.buffer("suspended paths", size, usage)?;
+    let group = gpu.bind(&gpu.layouts.words, &[&suspended]);
+    Ok((suspended, group))
 }
 
-/// The dispatches in flight, and what was learnt from completed ones.
+/// The dispatches in flight, and the times of completed ones.
 pub(super) struct Dispatches {
     slots: Vec<Slot>,
-    under_way: VecDeque<UnderWay>,
+    in_flight: VecDeque<InFlight>,
     last_done: Instant,
     /// By kernel, so that switching to another view of a scene and back keeps the full speed.
     budgets: HashMap<Features, Budget>,
     target: Duration,
-    /// Limit on a thread's loop turns, as the adapter counts them.
-    turn_limit: u32,
+    /// Limit on a thread's loop iterations, as the adapter counts them.
+    iteration_limit: u32,
     /// How often samples were missing.
     pub(super) caution: u32,
     /// Description of the missing samples, if needed samples are missing.
@@ -126,15 +126,15 @@ pub(super) struct Dispatches {
 impl Dispatches {
     /// # Errors
     /// If the device runs out of memory.
-    pub(super) fn new(gpu: &Gpu, target: Duration, turn_limit: Option<u32>) -> Result<Self, String> {
+    pub(super) fn new(gpu: &Gpu, target: Duration, iteration_limit: Option<u32>) -> Result<Self, String> {
         let target = if gpu.adapter.is_software { SOFTWARE_FACTOR * target } else { target };
         Ok(Dispatches {
-            slots: (0..QUEUE_DEPTH).map(|_| Slot::new(gpu, ASIDE_SIZE)).collect::<Result<_, _>>()?,
-            under_way: VecDeque::new(),
+            slots: (0..QUEUE_DEPTH).map(|_| Slot::new(gpu, SUSPENDED_SIZE)).collect::<Result<_, _>>()?,
+            in_flight: VecDeque::new(),
             last_done: Instant::now(),
             budgets: HashMap::new(),
             target,
-            turn_limit: turn_limit.unwrap_or(TURN_LIMIT / gpu.adapter.threads_in_step()),
+            iteration_limit: iteration_limit.unwrap_or(ITERATION_LIMIT / gpu.adapter.threads_in_step()),
             caution: 0,
             shortfall: None,
             count: 0,
@@ -149,7 +149,7 @@ impl Dispatches {
 
     /// Whether the device's own clock times dispatches.
     pub(super) fn is_timed_by_device(&self) -> bool {
-        self.slots.iter().all(|slot| slot.receipt.has_clock())
+        self.slots.iter().all(|slot| slot.readback.has_clock())
     }
 
     /// Whether a kernel has never run.
@@ -161,18 +161,19 @@ impl Dispatches {
         self.budgets.entry(*kernel).or_insert_with(|| Budget::new(self.target))
     }
 
-    /// Limit on a thread's loop turns in one dispatch.
-    pub(super) fn turn_limit(&self, kernel: &Features) -> u32 {
-        let shift = if kernel.aside { CAUTION_SHIFT * self.caution } else { 0 };
-        (self.turn_limit >> shift).max(1)
+    /// Limit on a thread's loop iterations in one dispatch.
+    pub(super) fn iteration_limit(&self, kernel: &Features) -> u32 {
+        let shift = if kernel.suspends { CAUTION_SHIFT * self.caution } else { 0 };
+        (self.iteration_limit >> shift).max(1)
     }
 
-    /// Samples per pixel that are sure to fit one dispatch however long their paths are, so that none are put aside.
+    /// Samples per pixel that are sure to fit one dispatch however long their paths are, so that none is suspended.
     /// `None` if that is unknown or not even one sample is sure to fit.
     pub(super) fn whole_samples(&self, kernel: &Features, prepared: &PreparedScene<f32>) -> Option<u64> {
-        // A path may take one turn without a ray at its end, and one turn precedes the first path.
-        let turns = u64::from(prepared.settings.max_depth) * (1 + turns_over_lists(kernel, prepared)) + 1;
-        let samples = u64::from(self.turn_limit - 1) / turns;
+        // A path may take one iteration without a ray at its end, and one iteration precedes the first path.
+        let iterations =
+            u64::from(prepared.settings.max_depth) * (1 + iterations_over_lists(kernel, prepared)) + 1;
+        let samples = u64::from(self.iteration_limit - 1) / iterations;
         (!kernel.hierarchy && samples > 0).then_some(samples)
     }
 
@@ -181,26 +182,26 @@ impl Dispatches {
     /// # Errors
     /// If the device runs out of memory.
     pub(super) fn make_room(&mut self, gpu: &Gpu, threads: u64, binding_limit: u64) -> Result<(), String> {
-        let size = threads.min(THREAD_LIMIT).min(binding_limit / ASIDE_SIZE) * ASIDE_SIZE;
+        let size = threads.min(THREAD_LIMIT).min(binding_limit / SUSPENDED_SIZE) * SUSPENDED_SIZE;
         for slot in &mut self.slots {
-            if slot.aside.size() < size {
-                // The receipt may belong to a dispatch in flight.
-                (slot.aside, slot.group) = storage_of_aside(gpu, size)?;
+            if slot.suspended.size() < size {
+                // The readback may belong to a dispatch in flight.
+                (slot.suspended, slot.group) = suspended_storage(gpu, size)?;
             }
         }
         Ok(())
     }
 
-    /// Most tiles in a dispatch.
+    /// Maximum number of tiles in a dispatch.
     pub(super) fn tile_limit(&self) -> u64 {
-        let sizes = self.slots.iter().map(|slot| slot.aside.size());
-        (sizes.min().unwrap_or_default() / (ASIDE_SIZE * u64::from(WORKGROUP_SIZE))).max(1)
+        let sizes = self.slots.iter().map(|slot| slot.suspended.size());
+        (sizes.min().unwrap_or_default() / (SUSPENDED_SIZE * u64::from(WORKGROUP_SIZE))).max(1)
     }
 
-    /// Marks the film of all dispatches in flight as no longer needed.
-    pub(super) fn abandon(&mut self) {
+    /// Discards the samples of all dispatches in flight.
+    pub(super) fn discard(&mut self) {
         self.shortfall = None;
-        self.under_way.iter_mut().for_each(|under_way| under_way.is_wanted = false);
+        self.in_flight.iter_mut().for_each(|in_flight| in_flight.is_needed = false);
     }
 
     /// Submits a dispatch, using a free slot.
@@ -211,60 +212,60 @@ impl Dispatches {
         dispatch: BoundDispatch,
         finished: u64,
     ) -> Result<(), String> {
-        let Slot { receipt, aside, group, is_littered } = &mut self.slots[slot];
+        let Slot { readback, suspended, group, holds_paths } = &mut self.slots[slot];
         gpu.queue.write_buffer(&dispatch.blocks_buffer, 0, bytemuck::cast_slice(&dispatch.blocks));
-        gpu.queue.write_buffer(&dispatch.order_buffer, 0, bytemuck::bytes_of(&dispatch.order));
+        gpu.queue.write_buffer(&dispatch.parameters_buffer, 0, bytemuck::bytes_of(&dispatch.parameters));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        if *is_littered {
-            encoder.clear_buffer(aside, 0, None);
-            *is_littered = false;
+        if *holds_paths && dispatch.parameters.resumes == 0 {
+            encoder.clear_buffer(suspended, 0, None);
         }
-        receipt.begin(&mut encoder, &dispatch.counters);
+        *holds_paths = false;
+        readback.begin(&mut encoder, &dispatch.counters);
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some("path_trace"),
-                timestamp_writes: receipt.writes(),
+                timestamp_writes: readback.writes(),
             });
             pass.set_pipeline(&dispatch.pipeline);
             pass.set_bind_group(0, &dispatch.scene, &[]);
             pass.set_bind_group(1, &dispatch.film, &[]);
             pass.set_bind_group(2, &*group, &[]);
-            let [x, y] = groups(dispatch.order.tile_count);
+            let [x, y] = groups(dispatch.parameters.tile_count);
             pass.dispatch_workgroups(x, y, 1);
         }
-        receipt.end(&mut encoder, &dispatch.counters);
+        readback.end(&mut encoder, &dispatch.counters);
         log::debug!(
             "dispatch {}: {} tiles from tile {}, {} blocks of samples, {} samples{}",
             self.count,
-            dispatch.order.tile_count,
-            dispatch.order.first_tile,
+            dispatch.parameters.tile_count,
+            dispatch.parameters.first_tile,
             dispatch.blocks.len(),
             dispatch.samples,
-            if dispatch.order.resumes == 0 { "" } else { ", resumed" }
+            if dispatch.parameters.resumes == 0 { "" } else { ", resumed" }
         );
         let submitted = Instant::now();
         let submission = gpu.queue.submit([encoder.finish()]);
-        receipt.ask();
-        self.under_way.push_back(UnderWay {
+        readback.request();
+        self.in_flight.push_back(InFlight {
             slot,
             submission,
             submitted,
             dispatch,
             finished,
-            is_wanted: true,
+            is_needed: true,
         });
         self.count += 1;
         gpu.faults.check()
     }
 
-    /// Waits for the oldest dispatch and learns from its time. If threads have put paths aside, submits it again.
-    fn finish(&mut self, gpu: &Gpu, cancel: Option<&AtomicBool>) -> Result<(), Broken> {
-        let Some(oldest) = self.under_way.front() else { return Ok(()) };
+    /// Waits for the oldest dispatch and learns from its time. If threads have suspended paths, submits it again.
+    fn finish_oldest(&mut self, gpu: &Gpu, cancel: Option<&AtomicBool>) -> Result<(), Incomplete> {
+        let Some(oldest) = self.in_flight.front() else { return Ok(()) };
         if !gpu.wait_unless(&oldest.submission, cancel).map_err(failed)? {
             return Err(RenderError::Cancelled.into());
         }
-        let Some(mut done) = self.under_way.pop_front() else { return Ok(()) };
-        let result = self.slots[done.slot].receipt.read().map_err(failed)?;
+        let Some(mut done) = self.in_flight.pop_front() else { return Ok(()) };
+        let result = self.slots[done.slot].readback.read().map_err(failed)?;
         let took = result.took.unwrap_or_else(|| {
             let begun = self.last_done.max(done.submitted);
             self.last_done = Instant::now();
@@ -272,8 +273,8 @@ impl Dispatches {
         });
         self.time += took;
         log::debug!("a dispatch took {:.3} ms", took.as_secs_f64() * 1e3);
-        if !done.is_wanted {
-            self.slots[done.slot].is_littered |= result.counters.unfinished > 0;
+        self.slots[done.slot].holds_paths = result.counters.unfinished > 0;
+        if !done.is_needed {
             return Ok(());
         }
         self.learn(&done.dispatch, &result, took);
@@ -281,8 +282,8 @@ impl Dispatches {
         if result.counters.stuck > 0 {
             return Err(failed(stuck(result.counters.stuck)).into());
         }
-        if result.counters.unfinished > 0 && done.dispatch.kernel.aside {
-            done.dispatch.order.resumes = 1;
+        if result.counters.unfinished > 0 && done.dispatch.kernel.suspends {
+            done.dispatch.parameters.resumes = 1;
             self.submit(gpu, done.slot, done.dispatch, done.finished).map_err(failed)?;
         } else if done.finished != done.dispatch.samples {
             self.shortfall = Some(done.dispatch.shortfall(done.finished));
@@ -291,8 +292,8 @@ impl Dispatches {
     }
 
     /// Returns `Err` while needed samples are missing.
-    pub(super) fn check_whole(&self) -> Result<(), Broken> {
-        self.shortfall.clone().map_or(Ok(()), |shortfall| Err(Broken::Short(shortfall)))
+    pub(super) fn check_whole(&self) -> Result<(), Incomplete> {
+        self.shortfall.clone().map_or(Ok(()), |shortfall| Err(Incomplete::Short(shortfall)))
     }
 
     fn learn(&mut self, dispatch: &BoundDispatch, result: &DispatchResult, took: Duration) {
@@ -302,28 +303,28 @@ impl Dispatches {
     }
 
     /// Waits for all dispatches in flight.
-    pub(super) fn drain(&mut self, gpu: &Gpu, cancel: Option<&AtomicBool>) -> Result<(), Broken> {
-        while !self.under_way.is_empty() {
-            self.finish(gpu, cancel)?;
+    pub(super) fn drain(&mut self, gpu: &Gpu, cancel: Option<&AtomicBool>) -> Result<(), Incomplete> {
+        while !self.in_flight.is_empty() {
+            self.finish_oldest(gpu, cancel)?;
         }
         self.check_whole()
     }
 
     /// Returns a slot without a dispatch in flight; waits for one if necessary.
-    pub(super) fn free_slot(&mut self, gpu: &Gpu, cancel: &AtomicBool) -> Result<usize, Broken> {
+    pub(super) fn free_slot(&mut self, gpu: &Gpu, cancel: &AtomicBool) -> Result<usize, Incomplete> {
         loop {
-            let is_free = |slot: &usize| self.under_way.iter().all(|under_way| under_way.slot != *slot);
+            let is_free = |slot: &usize| self.in_flight.iter().all(|in_flight| in_flight.slot != *slot);
             if let Some(slot) = (0..self.slots.len()).find(is_free) {
                 return Ok(slot);
             }
-            self.finish(gpu, Some(cancel))?;
+            self.finish_oldest(gpu, Some(cancel))?;
         }
     }
 }
 
 impl BoundDispatch {
     fn shortfall(&self, finished: u64) -> String {
-        let GpuDispatch { first_tile, tile_count, first_row, .. } = self.order;
+        let GpuDispatch { first_tile, tile_count, first_row, .. } = self.parameters;
         let block_count = self.blocks.len();
         let last_tile = first_tile + tile_count.saturating_sub(1);
         format!(
@@ -338,7 +339,7 @@ impl BoundDispatch {
 pub(super) fn stuck(pixels: u32) -> String {
     format!(
         "{pixels} pixels have a ray that is tested against more of the scene than a loop of this driver allows \
-         (llvmpipe: 65,535 turns); render this scene on the CPU"
+         (llvmpipe: 65,535 iterations); render this scene on the CPU"
     )
 }
 
@@ -352,28 +353,28 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_step_of_caution_makes_dispatches_eight_times_shorter() {
-        let turns = |turn_limit: u32, aside: bool| {
+    fn each_step_of_caution_shortens_dispatches_eightfold() {
+        let limits = |iteration_limit: u32, suspends: bool| {
             [0, 1, 2, 3].map(|caution| {
                 let dispatches = Dispatches {
                     slots: Vec::new(),
-                    under_way: VecDeque::new(),
+                    in_flight: VecDeque::new(),
                     last_done: Instant::now(),
                     budgets: HashMap::new(),
                     target: Duration::ZERO,
-                    turn_limit,
+                    iteration_limit,
                     caution,
                     shortfall: None,
                     count: 0,
                     time: Duration::ZERO,
                 };
-                dispatches.turn_limit(&Features { aside, ..Features::default() })
+                dispatches.iteration_limit(&Features { suspends, ..Features::default() })
             })
         };
-        assert_eq!(turns(5120, true), [5120, 640, 80, 10]);
-        assert_eq!(turns(100, true), [100, 12, 1, 1]);
-        // A kernel that cannot put paths aside has to trace them to their ends.
-        assert_eq!(turns(5120, false), [5120; 4]);
+        assert_eq!(limits(5120, true), [5120, 640, 80, 10]);
+        assert_eq!(limits(100, true), [100, 12, 1, 1]);
+        // A kernel that cannot suspend paths has to trace them to their ends.
+        assert_eq!(limits(5120, false), [5120; 4]);
     }
 
     #[test]

@@ -1,11 +1,11 @@
-//! The film on the device. It stays there from pass to pass. On request it is copied to staging buffers and cleared;
-//! the copy is transferred to the host while the device continues tracing.
+//! The film on the device. It stays there from pass to pass. A readback copies it to staging buffers and clears it; the copy
+//! is transferred to the host while the device continues tracing.
 
-use super::arrival::add_rows;
+use super::add_sums::add_rows;
 use super::device::Gpu;
 use super::failed;
 use super::layout::{GpuBlock, GpuCounters, GpuDispatch, tile_size};
-use super::readback::{Mapping, asked, view};
+use super::readback::{Mapping, request_mapping, view};
 use super::schedule::BLOCK_LIMIT;
 use crate::film::{Film, PixelSum, SampleRanges};
 use crate::job::render::{RenderError, RenderSettings, Stats};
@@ -15,8 +15,8 @@ use std::time::{Duration, Instant};
 /// Size of a pixel's sums in bytes.
 const PIXEL_SIZE: u64 = size_of::<PixelSum>() as u64;
 
-/// Unrequested transfers of the film may take at most one part in this many of the time.
-const ARRIVAL_SHARE: u32 = 20;
+/// Unrequested readbacks may take at most one part in this many of the time.
+const READBACK_SHARE: u32 = 20;
 
 /// The rows of the film that one buffer holds.
 pub struct Slab {
@@ -30,8 +30,8 @@ pub struct Slab {
     staging: wgpu::Buffer,
 }
 
-/// Samples that are being transferred from the device.
-struct Leaving {
+/// A readback in progress.
+struct Readback {
     samples: SampleRanges,
     trace: Duration,
     submission: wgpu::SubmissionIndex,
@@ -45,7 +45,7 @@ pub struct FilmBuffers {
     /// The slabs, from the top of the picture down.
     pub slabs: Vec<Slab>,
     /// Parameters of a dispatch: a [`GpuDispatch`].
-    pub order: wgpu::Buffer,
+    pub parameters: wgpu::Buffer,
     /// The blocks of samples of a dispatch.
     pub blocks: wgpu::Buffer,
     /// The counters of dispatches: [`GpuCounters`].
@@ -53,13 +53,13 @@ pub struct FilmBuffers {
     counters_staging: wgpu::Buffer,
     traced: SampleRanges,
     trace: Duration,
-    leaving: Option<Leaving>,
-    arrived_at: Instant,
-    arrival_took: Duration,
-    /// How often sums were added to a film.
-    pub arrivals: u64,
+    readback: Option<Readback>,
+    read_back_at: Instant,
+    readback_took: Duration,
+    /// Number of readbacks.
+    pub readbacks: u64,
     /// Total time that the host spent adding sums.
-    pub arrivals_took: Duration,
+    pub readbacks_took: Duration,
 }
 
 fn shape(settings: &RenderSettings, limit: u64) -> (u32, u32, usize, u64) {
@@ -88,8 +88,8 @@ impl FilmBuffers {
         use wgpu::BufferUsages as Usages;
         let copied = Usages::STORAGE | Usages::COPY_SRC | Usages::COPY_DST;
         let read = Usages::MAP_READ | Usages::COPY_DST;
-        let order_size = size_of::<GpuDispatch>() as u64;
-        let order = gpu.buffer("dispatch", order_size, Usages::UNIFORM | Usages::COPY_DST)?;
+        let parameters_size = size_of::<GpuDispatch>() as u64;
+        let parameters = gpu.buffer("dispatch", parameters_size, Usages::UNIFORM | Usages::COPY_DST)?;
         let blocks_size = (BLOCK_LIMIT * size_of::<GpuBlock>()) as u64;
         let blocks = gpu.buffer("blocks", blocks_size, Usages::STORAGE | Usages::COPY_DST)?;
         let counters_size = size_of::<GpuCounters>() as u64;
@@ -102,24 +102,24 @@ impl FilmBuffers {
             let size = row_size * u64::from(row_count);
             let sums = gpu.buffer("film", size, copied)?;
             let staging = gpu.buffer("film, read", size, read)?;
-            let group = gpu.bind(&gpu.layouts.dispatch, &[&order, &blocks, &sums, &counters]);
+            let group = gpu.bind(&gpu.layouts.dispatch, &[&parameters, &blocks, &sums, &counters]);
             slabs.push(Slab { first_row, row_count, group, sums, staging });
             first_row += row_count;
         }
         Ok(FilmBuffers {
             shape: shape(settings, limit),
             slabs,
-            order,
+            parameters,
             blocks,
             counters,
             counters_staging,
             traced: SampleRanges::default(),
             trace: Duration::ZERO,
-            leaving: None,
-            arrived_at: Instant::now(),
-            arrival_took: Duration::ZERO,
-            arrivals: 0,
-            arrivals_took: Duration::ZERO,
+            readback: None,
+            read_back_at: Instant::now(),
+            readback_took: Duration::ZERO,
+            readbacks: 0,
+            readbacks_took: Duration::ZERO,
         })
     }
 
@@ -128,18 +128,10 @@ impl FilmBuffers {
         self.shape == shape(settings, limit)
     }
 
-    /// The sums, if there is only one slab, for [`super::GpuRenderer::resolve`].
-    pub fn sums_of_whole(&self) -> Option<&wgpu::Buffer> {
-        match self.slabs.as_slice() {
-            [only] => Some(&only.sums),
-            _ => None,
-        }
-    }
-
     /// Returns an error if any of these samples are in `film` or on the device.
     pub fn check_new(&self, range: &Range<u64>, film: &Film) -> Result<(), RenderError> {
-        let leaving = self.leaving.as_ref().map(|leaving| &leaving.samples);
-        for held in [film.samples(), &self.traced].into_iter().chain(leaving) {
+        let readback = self.readback.as_ref().map(|readback| &readback.samples);
+        for held in [film.samples(), &self.traced].into_iter().chain(readback) {
             if let Some(range) = held.overlap(range) {
                 return Err(crate::film::FilmError::Overlap { range }.into());
             }
@@ -159,32 +151,32 @@ impl FilmBuffers {
 
     /// Whether any samples are on the device or being transferred.
     pub fn holds_samples(&self) -> bool {
-        self.leaving.is_some() || self.traced.count() > 0
+        self.readback.is_some() || self.traced.count() > 0
     }
 
     /// The samples on the device, including those being transferred.
     pub fn held(&self) -> SampleRanges {
         let mut held = self.traced.clone();
-        for range in self.leaving.iter().flat_map(|leaving| leaving.samples.iter()) {
+        for range in self.readback.iter().flat_map(|readback| readback.samples.iter()) {
             // No sample is traced twice: [`FilmBuffers::check_new`] ensures it.
             let _ = held.insert(range);
         }
         held
     }
 
-    /// Whether samples are being transferred.
-    pub fn is_leaving(&self) -> bool {
-        self.leaving.is_some()
+    /// Whether a readback is in progress.
+    pub fn is_reading_back(&self) -> bool {
+        self.readback.is_some()
     }
 
-    /// Whether the last transfer is so long ago that another costs little.
-    pub fn is_due(&self) -> bool {
-        self.arrived_at.elapsed() >= self.arrival_took * ARRIVAL_SHARE
+    /// Whether the last readback is so long ago that another costs little.
+    pub fn is_readback_due(&self) -> bool {
+        self.read_back_at.elapsed() >= self.readback_took * READBACK_SHARE
     }
 
     /// Discards everything traced. Sums of work in flight are cleared after that work.
-    pub fn forget(&mut self, gpu: &Gpu) {
-        if self.leaving.take().is_some() {
+    pub fn discard(&mut self, gpu: &Gpu) {
+        if self.readback.take().is_some() {
             self.stagings().for_each(wgpu::Buffer::unmap);
         }
         self.traced = SampleRanges::default();
@@ -194,9 +186,9 @@ impl FilmBuffers {
         gpu.queue.submit([encoder.finish()]);
     }
 
-    /// Starts the transfer of the sums as they will be after the submitted work, and clears them for the next samples.
-    pub fn leave(&mut self, gpu: &Gpu) {
-        if self.leaving.is_some() || self.traced.count() == 0 {
+    /// Starts a readback of the sums as they will be after the submitted work, and clears them for the next samples.
+    pub fn request_readback(&mut self, gpu: &Gpu) {
+        if self.readback.is_some() || self.traced.count() == 0 {
             return;
         }
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -206,23 +198,24 @@ impl FilmBuffers {
         encoder.copy_buffer_to_buffer(&self.counters, 0, &self.counters_staging, 0, self.counters.size());
         self.clear(&mut encoder);
         let submission = gpu.queue.submit([encoder.finish()]);
-        let slabs = self.slabs.iter().map(|slab| asked(&slab.staging)).collect();
-        let counters = asked(&self.counters_staging);
+        let slabs = self.slabs.iter().map(|slab| request_mapping(&slab.staging)).collect();
+        let counters = request_mapping(&self.counters_staging);
         let (samples, trace) = (std::mem::take(&mut self.traced), std::mem::take(&mut self.trace));
-        self.leaving = Some(Leaving { samples, trace, submission, slabs, counters });
+        self.readback = Some(Readback { samples, trace, submission, slabs, counters });
     }
 
-    /// Waits for the transfer in progress and adds its samples to the film.
+    /// Waits for the readback in progress and adds its samples to the film.
     ///
     /// # Errors
     /// The device's error; the film is unchanged.
-    pub fn arrive(&mut self, gpu: &Gpu, film: &mut Film) -> Result<Stats, RenderError> {
-        let Some(leaving) = self.leaving.take() else { return Ok(Stats::default()) };
-        gpu.wait_unless(&leaving.submission, None).map_err(failed)?;
-        let counters = view(&self.counters_staging, &leaving.counters).map_err(failed)?;
-        let views = self.slabs.iter().zip(&leaving.slabs).map(|(slab, mapping)| view(&slab.staging, mapping));
+    pub fn finish_readback(&mut self, gpu: &Gpu, film: &mut Film) -> Result<Stats, RenderError> {
+        let Some(readback) = self.readback.take() else { return Ok(Stats::default()) };
+        gpu.wait_unless(&readback.submission, None).map_err(failed)?;
+        let counters = view(&self.counters_staging, &readback.counters).map_err(failed)?;
+        let views =
+            self.slabs.iter().zip(&readback.slabs).map(|(slab, mapping)| view(&slab.staging, mapping));
         let views = views.collect::<Result<Vec<_>, _>>().map_err(failed)?;
-        if let Some(range) = leaving.samples.iter().find_map(|range| film.samples().overlap(&range)) {
+        if let Some(range) = readback.samples.iter().find_map(|range| film.samples().overlap(&range)) {
             drop((counters, views));
             self.stagings().for_each(wgpu::Buffer::unmap);
             return Err(crate::film::FilmError::Overlap { range }.into());
@@ -234,7 +227,7 @@ impl FilmBuffers {
         let GpuCounters { rays, rays_high, rejected, rejected_high, .. } =
             bytemuck::pod_read_unaligned(&counters);
 
-        // All data has arrived: nothing can fail from here on.
+        // All data is on the host: nothing can fail from here on.
         for (slab, sums) in self.slabs.iter().zip(sums) {
             add_rows(film, slab.first_row, sums);
         }
@@ -243,21 +236,21 @@ impl FilmBuffers {
         let wide = |low: u32, high: u32| u64::from(low) | u64::from(high) << 32;
         let (rays, rejected) = (wide(rays, rays_high), wide(rejected, rejected_high));
         let mut unrecorded = rejected;
-        for range in leaving.samples.iter() {
+        for range in readback.samples.iter() {
             film.record(range, std::mem::take(&mut unrecorded))?;
         }
-        self.arrived_at = Instant::now();
-        self.arrival_took = begin.elapsed();
-        self.arrivals += 1;
-        self.arrivals_took += self.arrival_took;
+        self.read_back_at = Instant::now();
+        self.readback_took = begin.elapsed();
+        self.readbacks += 1;
+        self.readbacks_took += self.readback_took;
         let pixels = u64::from(film.width()) * u64::from(film.height());
         Ok(Stats {
-            paths: pixels * leaving.samples.count(),
+            paths: pixels * readback.samples.count(),
             rays,
             rejected,
             busy_lanes: rays,
             offered_lanes: rays,
-            trace: leaving.trace,
+            trace: readback.trace,
         })
     }
 

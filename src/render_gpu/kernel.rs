@@ -28,8 +28,7 @@ pub struct Kernel {
     pub compile_time: Duration,
 }
 
-/// Entry point, features, and number of the probe, which matters only for [`EntryPoint::Probe`].
-type Key = (EntryPoint, Features, u32);
+type Key = (EntryPoint, Features);
 
 type Modules = Arc<Mutex<HashMap<EntryPoint, wgpu::ShaderModule>>>;
 
@@ -98,7 +97,7 @@ fn start(gpu: Gpu, key: Key, modules: Modules) -> Slot {
     let (sender, kernel) = mpsc::channel();
     let compile = {
         let (gpu, modules) = (gpu.clone(), Arc::clone(&modules));
-        // If the renderer has been dropped, nobody receives the kernel.
+        // If the renderer has been dropped, there is no receiver.
         move || drop(sender.send(compiled(&gpu, key, &modules)))
     };
     match std::thread::Builder::new().name("compile".to_owned()).spawn(compile) {
@@ -107,7 +106,7 @@ fn start(gpu: Gpu, key: Key, modules: Modules) -> Slot {
     }
 }
 
-fn compiled(gpu: &Gpu, (entry_point, features, probe): Key, modules: &Modules) -> Result<Kernel, String> {
+fn compiled(gpu: &Gpu, (entry_point, features): Key, modules: &Modules) -> Result<Kernel, String> {
     let start = Instant::now();
     let label = Some(entry_point.name());
     let module = {
@@ -126,7 +125,6 @@ fn compiled(gpu: &Gpu, (entry_point, features, probe): Key, modules: &Modules) -
     let overrides = features.overrides();
     let mut constants: Vec<(&str, f64)> =
         overrides.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-    constants.push(("PROBE", f64::from(probe)));
     constants.push(("RECORD", f64::from(u8::from(entry_point == EntryPoint::PathRecord))));
     let pipeline = gpu.guarded(|| {
         gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -156,8 +154,8 @@ fn compiled(gpu: &Gpu, (entry_point, features, probe): Key, modules: &Modules) -
 fn module_of(gpu: &Gpu, described: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::ShaderModule {
     let checks = wgpu::ShaderRuntimeChecks { force_loop_bounding: false, ..Default::default() };
     // SAFETY: all checks but those of loops stay, and every loop of the shaders ends. The loop over a thread's rays counts
-    // its turns up to `turn_limit`, the traversal its nodes up to `node_count`, and the loop over a leaf clears one of 24
-    // bits per turn. All others count up to a number that does not change.
+    // its iterations up to `iteration_limit`, the traversal its nodes up to `node_count`, and the loop over a leaf clears one of 24
+    // bits per iteration. All others count up to a number that does not change.
     unsafe { gpu.device.create_shader_module_trusted(described, checks) }
 }
 

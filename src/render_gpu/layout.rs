@@ -2,7 +2,7 @@
 
 use crate::job::render::RenderSettings;
 pub use crate::kernel::{
-    GpuAside, GpuBlock, GpuCounters, GpuDispatch, GpuDispatchCounters, GpuJob, WORKGROUP_SIZE,
+    GpuBlock, GpuCounters, GpuDispatch, GpuDispatchCounters, GpuJob, GpuSuspendedPath, WORKGROUP_SIZE,
 };
 use crate::prepared::PreparedScene;
 use std::array::from_fn;

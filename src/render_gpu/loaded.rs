@@ -5,7 +5,7 @@ use super::kernel::Kernel;
 use super::layout::{GpuJob, WORKGROUP_SIZE, tile_size};
 use super::options::InjectionPoint;
 use super::scene::SceneData;
-use super::scene::{TURN_LIMIT, turns_over_lists};
+use super::scene::{ITERATION_LIMIT, iterations_over_lists};
 use super::shader_source::EntryPoint;
 use super::{GpuRenderer, failed};
 use crate::job::render::{RenderError, RenderJob};
@@ -13,7 +13,6 @@ use crate::kernel::{Features, RECORD_COLUMNS, words_of};
 use crate::prepared::PreparedScene;
 use std::borrow::Cow;
 use std::sync::atomic::AtomicBool;
-use std::time::Duration;
 
 /// A job loaded to the device.
 pub(super) struct Loaded {
@@ -29,8 +28,6 @@ pub(super) struct SceneOnDevice {
     pub(super) prepared: PreparedScene<f32>,
     /// The index in the scene of each sphere, by number.
     pub(super) scene_index: Vec<u32>,
-    /// Time spent building the hierarchies; zero if they were there already.
-    pub(super) hierarchy_time: Duration,
     /// Number of nodes in the hierarchy.
     node_count: u32,
     job_buffer: wgpu::Buffer,
@@ -46,7 +43,7 @@ impl GpuRenderer {
         match self.loaded.take() {
             Some(loaded) if loaded.job == *job => Ok(loaded),
             old => {
-                self.dispatches.abandon();
+                self.dispatches.discard();
                 self.inject(InjectionPoint::Prepare, self.preparations);
                 self.preparations += 1;
                 self.built(job, old, cancel)
@@ -65,11 +62,10 @@ impl GpuRenderer {
             old.map_or((None, None), |old| (Some((old.scene, old.job)), Some(old.film)));
         let follows = seen.as_mut().is_some_and(|(scene, before)| scene.prepared.follow(before, job));
         let scene = match seen {
-            Some((mut scene, _)) if follows => {
+            Some((scene, _)) if follows => {
                 let data = GpuJob::new(&scene.prepared, scene.node_count);
                 self.gpu.queue.write_buffer(&scene.job_buffer, 0, bytemuck::cast_slice(&words_of(&[data])));
                 self.renew_anchored(&scene);
-                scene.hierarchy_time = Duration::ZERO;
                 scene
             }
             other => {
@@ -80,11 +76,11 @@ impl GpuRenderer {
         };
         let features = self.features(&scene.prepared);
         self.check_lists(&features, &scene.prepared).map_err(failed)?;
-        self.kernels.begin(&self.gpu, (EntryPoint::PathTrace, features, 0));
+        self.kernels.begin(&self.gpu, (EntryPoint::PathTrace, features));
         self.messages.extend(scene.prepared.warning().cloned());
         let film = self.film_buffers(job, old_film).map_err(failed)?;
         self.make_room(job).map_err(failed)?;
-        let kernel = self.kernels.get(&self.gpu, (EntryPoint::PathTrace, features, 0), cancel)?;
+        let kernel = self.kernels.get(&self.gpu, (EntryPoint::PathTrace, features), cancel)?;
         self.gpu.faults.check().map_err(failed)?;
         if self.dispatches.is_new(&features) {
             self.gpu.expect_compiling();
@@ -114,8 +110,8 @@ impl GpuRenderer {
         let specialise = self.options.specialise;
         let made = PreparedScene::<f32>::for_gpu(cancel, job, |needed| {
             let features = if specialise { *needed } else { needed.generalised() };
-            // With a hierarchy, paths may be put aside.
-            kernels.begin(gpu, (EntryPoint::PathTrace, Features { aside: true, ..features }, 0));
+            // With a hierarchy, paths may be suspended.
+            kernels.begin(gpu, (EntryPoint::PathTrace, Features { suspends: true, ..features }));
         });
         let mut prepared = made.ok_or(RenderError::Cancelled)?;
         let data = SceneData::new(&mut prepared);
@@ -125,22 +121,22 @@ impl GpuRenderer {
     fn features(&self, prepared: &PreparedScene<f32>) -> Features {
         let needed = prepared.features;
         let features = if self.options.specialise { needed } else { needed.generalised() };
-        Features { aside: self.dispatches.whole_samples(&features, prepared).is_none(), ..features }
+        Features { suspends: self.dispatches.whole_samples(&features, prepared).is_none(), ..features }
     }
 
     /// Rejects lists that are longer than the driver's loops allow.
     fn check_lists(&self, features: &Features, prepared: &PreparedScene<f32>) -> Result<(), String> {
-        let turns = turns_over_lists(features, prepared);
-        if self.gpu.adapter.threads_in_step() > 1 && turns >= u64::from(TURN_LIMIT) {
+        let iterations = iterations_over_lists(features, prepared);
+        if self.gpu.adapter.threads_in_step() > 1 && iterations >= u64::from(ITERATION_LIMIT) {
             return Err(format!(
-                "each ray is tested against {turns} spheres, but loops of {} end after {TURN_LIMIT} turns; render this scene on the CPU",
+                "each ray is tested against {iterations} spheres, but loops of {} end after {ITERATION_LIMIT} iterations; render this scene on the CPU",
                 self.gpu.adapter.name
             ));
         }
         Ok(())
     }
 
-    /// Allocates storage for the paths that the threads of a picture may put aside.
+    /// Allocates storage for the paths that the threads of a picture may suspend.
     fn make_room(&mut self, job: &RenderJob) -> Result<(), String> {
         let (width, height) = (job.settings().width, job.settings().height);
         let [tile_width, tile_height] = tile_size(width, height);
@@ -189,7 +185,6 @@ impl GpuRenderer {
             scene_index: prepared.scene_index.clone(),
             node_count: scene.node_count,
             job_buffer,
-            hierarchy_time: prepared.hierarchy_time,
             prepared,
         })
     }
@@ -202,7 +197,7 @@ impl GpuRenderer {
             return FilmBuffers::new(&self.gpu, job.settings(), limit);
         };
         // Work in flight was abandoned.
-        film.forget(&self.gpu);
+        film.discard(&self.gpu);
         Ok(film)
     }
 }

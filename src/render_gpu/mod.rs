@@ -5,7 +5,7 @@
 //! film. Sample indices, random numbers and fixed-point sums match the CPU's to the bit.
 
 mod adapter;
-mod arrival;
+mod add_sums;
 mod device;
 mod dispatches;
 mod film_buffers;
@@ -21,17 +21,20 @@ pub mod shader_source;
 mod small_programs;
 mod trace;
 
-pub use adapter::{AdapterInfo, adapters};
+pub use adapter::{AdapterInfo, BUSY_THREADS_OF_SOFTWARE, SOFTWARE_THREADS_IN_STEP, adapters};
 pub use options::{
     BATCH_TARGET, Fault, FaultInjection, GpuError, GpuOptions, GpuReport, INTERACTIVE_TARGET, InjectionPoint,
 };
-pub use scene::{Exported, SHARED_BLOCK, TURN_LIMIT};
+pub use scene::{Exported, ITERATION_LIMIT, SHARED_BLOCK};
+pub use schedule::{BUDGET_LIMITS, FIRST_PATHS, GROWTH_LIMIT};
 
 use crate::film::Film;
-use crate::job::render::{BackendInfo, KernelInfo, RenderError, RenderJob, Renderer, Stats};
+use crate::job::render::{
+    BackendInfo, Control, Diagnostics, KernelInfo, Outcome, RenderError, RenderJob, Renderer, Stats,
+};
 use crate::kernel::parts;
 use device::Gpu;
-use dispatches::{Broken, Dispatches};
+use dispatches::{Dispatches, Incomplete};
 use kernel::Kernels;
 use loaded::Loaded;
 use std::ops::Range;
@@ -47,8 +50,8 @@ pub struct GpuRenderer {
     loaded: Option<Loaded>,
     /// Number of jobs prepared.
     preparations: u64,
-    /// Number of times a film was sent for.
-    fetches: u64,
+    /// Number of readbacks requested.
+    readbacks: u64,
     messages: Vec<String>,
 }
 
@@ -63,7 +66,7 @@ impl GpuRenderer {
     /// [`GpuError`], with the available adapters.
     pub fn new(options: GpuOptions) -> Result<Self, GpuError> {
         let gpu = Gpu::open(options.adapter.as_deref(), options.allow_software, options.patience)?;
-        let dispatches = Dispatches::new(&gpu, options.dispatch_target, options.turn_limit)
+        let dispatches = Dispatches::new(&gpu, options.dispatch_target, options.iteration_limit)
             .map_err(|reason| GpuError::Device { adapter: gpu.adapter.to_string(), reason })?;
         let software = |adapter: &AdapterInfo| {
             format!("{adapter} is not a GPU: it runs on the processor and is slower than the CPU backend")
@@ -76,7 +79,7 @@ impl GpuRenderer {
             dispatches,
             loaded: None,
             preparations: 0,
-            fetches: 0,
+            readbacks: 0,
             messages,
         })
     }
@@ -86,9 +89,9 @@ impl GpuRenderer {
         &self.gpu.adapter
     }
 
-    /// A report of what was compiled and measured so far.
+    /// Figures of dispatches and readbacks so far.
     pub fn report(&self) -> GpuReport {
-        let film = |loaded: &Loaded| (loaded.film.arrivals, loaded.film.arrivals_took);
+        let film = |loaded: &Loaded| (loaded.film.readbacks, loaded.film.readbacks_took);
         let (films, film_time) = self.loaded.as_ref().map_or((0, Duration::ZERO), film);
         GpuReport {
             dispatches: self.dispatches.count,
@@ -110,7 +113,7 @@ impl GpuRenderer {
         self.work_on(loaded, work)
     }
 
-    /// Runs `work` on what is loaded. If that fails, traced samples are discarded.
+    /// Runs `work` on the loaded job. If that fails, traced samples are discarded.
     fn work_on<T>(
         &mut self,
         mut loaded: Loaded,
@@ -118,19 +121,19 @@ impl GpuRenderer {
     ) -> Result<T, RenderError> {
         let result = work(self, &mut loaded);
         if let Err(RenderError::Cancelled | RenderError::Backend { .. }) = result {
-            self.forget(&mut loaded);
+            self.discard(&mut loaded);
         }
         self.loaded = Some(loaded);
         result
     }
 
     /// Discards traced samples that are not in a film.
-    fn forget(&mut self, loaded: &mut Loaded) {
-        self.dispatches.abandon();
-        loaded.film.forget(&self.gpu);
+    fn discard(&mut self, loaded: &mut Loaded) {
+        self.dispatches.discard();
+        loaded.film.discard(&self.gpu);
     }
 
-    /// Injects the fault that is due at the `count`th event of this kind, if any, by breaking the device.
+    /// Injects the fault that is due at the `count`th event of this kind, by breaking the device.
     fn inject(&self, point: InjectionPoint, count: u64) -> Option<Fault> {
         let is_due = |injection: &FaultInjection| {
             let lasts = injection.fault == Fault::AlwaysShort;
@@ -141,44 +144,37 @@ impl GpuRenderer {
         Some(injection.fault)
     }
 
-    /// Adds samples to the film, or leaves them on the device unless they `are_collected`.
-    fn add(
-        &mut self,
-        job: &RenderJob,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-        are_collected: bool,
-    ) -> Result<Stats, RenderError> {
-        self.with_loaded(job, cancel, |this, loaded| {
-            match this.traced(loaded, &range, film, cancel, are_collected) {
-                Err(Broken::Short(reason)) => this.trace_again(loaded, reason, range, film, cancel),
-                Err(Broken::Ended(error)) => Err(error),
-                Ok(stats) => Ok(stats),
-            }
-        })
-    }
-
-    fn traced(
+    /// Traces samples and adds them to the film, or leaves them on the device if they `may_defer`.
+    fn trace(
         &mut self,
         loaded: &mut Loaded,
         range: &Range<u64>,
         film: &mut Film,
-        cancel: &AtomicBool,
-        are_collected: bool,
-    ) -> Result<Stats, Broken> {
+        &Control { cancel, may_defer, .. }: &Control,
+    ) -> Result<Stats, Incomplete> {
         let begin = Instant::now();
         let mut stats = self.trace_range(loaded, range, film, cancel)?;
-        if are_collected {
+        if !may_defer {
             self.dispatches.drain(&self.gpu, Some(cancel))?;
         }
         loaded.film.note(range.clone(), begin.elapsed())?;
-        if are_collected {
-            stats.add(&self.collect_all(loaded, film)?);
-        } else if loaded.film.is_due() {
-            self.send_for_film(loaded)?;
+        if !may_defer {
+            stats.add(&self.finish_all(loaded, film)?);
+        } else if loaded.film.is_readback_due() {
+            self.read_film_back(loaded)?;
         }
         Ok(stats)
+    }
+
+    fn kernel(&self) -> KernelInfo {
+        let Some(Loaded { scene, features, kernel, .. }) = &self.loaded else { return KernelInfo::default() };
+        let (present, timer) = (parts::describe(features.parts()), self.dispatches.timer());
+        let seconds = kernel.compile_time.as_secs_f64();
+        KernelInfo {
+            about: format!("{present}; compiled in {seconds:.3} s; dispatches timed by {timer}"),
+            left_out: parts::left_out(features.parts()),
+            hierarchy_time: scene.prepared.hierarchy_source.time(),
+        }
     }
 }
 
@@ -196,38 +192,18 @@ impl Renderer for GpuRenderer {
         std::mem::take(&mut self.messages)
     }
 
-    fn device_time(&self) -> Option<Duration> {
-        self.dispatches.is_timed_by_device().then_some(self.dispatches.time)
-    }
-
-    fn kernel(&self) -> KernelInfo {
-        let Some(Loaded { scene, features, kernel, .. }) = &self.loaded else { return KernelInfo::default() };
-        let (present, timer) = (parts::describe(features.parts()), self.dispatches.timer());
-        let seconds = kernel.compile_time.as_secs_f64();
-        KernelInfo {
-            about: format!("{present}; compiled in {seconds:.3} s; dispatches timed by {timer}"),
-            left_out: parts::left_out(features.parts()),
-            hierarchy_time: scene.hierarchy_time,
-        }
+    fn diagnostics(&self) -> Diagnostics {
+        let device_time = self.dispatches.is_timed_by_device().then_some(self.dispatches.time);
+        Diagnostics { kernel: self.kernel(), device_time, ..Diagnostics::default() }
     }
 
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
         self.with_loaded(job, cancel, |this, loaded| {
             if loaded.film.holds_samples() {
-                this.forget(loaded);
+                this.discard(loaded);
             }
             Ok(())
         })
-    }
-
-    fn accumulate(
-        &mut self,
-        job: &RenderJob,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        self.add(job, range, film, cancel, true)
     }
 
     fn advance(
@@ -235,27 +211,34 @@ impl Renderer for GpuRenderer {
         job: &RenderJob,
         range: Range<u64>,
         film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        self.add(job, range, film, cancel, false)
+        control: &Control,
+    ) -> Result<Outcome, RenderError> {
+        let stats = self.with_loaded(job, control.cancel, |this, loaded| {
+            match this.trace(loaded, &range, film, control) {
+                Err(Incomplete::Short(reason)) => this.retrace(loaded, reason, range, film, control.cancel),
+                Err(Incomplete::Failed(error)) => Err(error),
+                Ok(stats) => Ok(stats),
+            }
+        })?;
+        Ok(stats.into())
     }
 
-    fn fetch(&mut self) -> Result<(), RenderError> {
+    fn request_readback(&mut self) -> Result<(), RenderError> {
         let Some(loaded) = self.loaded.take() else { return Ok(()) };
-        self.work_on(loaded, |this, loaded| match this.send_for_film(loaded) {
+        self.work_on(loaded, |this, loaded| match this.read_film_back(loaded) {
             // The next call will detect missing samples.
-            Ok(()) | Err(Broken::Short(_)) => Ok(()),
-            Err(Broken::Ended(error)) => Err(error),
+            Ok(()) | Err(Incomplete::Short(_)) => Ok(()),
+            Err(Incomplete::Failed(error)) => Err(error),
         })
     }
 
-    fn collect(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
+    fn finish(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
         let Some(loaded) = self.loaded.take() else { return Ok(Stats::default()) };
-        self.work_on(loaded, |this, loaded| match this.collect_all(loaded, film) {
-            Err(Broken::Short(reason)) => {
-                this.trace_again(loaded, reason, 0..0, film, &AtomicBool::new(false))
+        self.work_on(loaded, |this, loaded| match this.finish_all(loaded, film) {
+            Err(Incomplete::Short(reason)) => {
+                this.retrace(loaded, reason, 0..0, film, &AtomicBool::new(false))
             }
-            Err(Broken::Ended(error)) => Err(error),
+            Err(Incomplete::Failed(error)) => Err(error),
             Ok(stats) => Ok(stats),
         })
     }

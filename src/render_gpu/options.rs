@@ -66,9 +66,9 @@ pub struct GpuOptions {
     pub specialise: bool,
     /// Samples per pixel in a dispatch, for measurements; by default as many as the target time allows.
     pub samples_per_dispatch: Option<u64>,
-    /// Loop turns after which a thread puts its path aside, for tests; by default as many as are safe.
-    pub turn_limit: Option<u32>,
-    /// Most bytes of a film on the device at once; by default the adapter's binding limit.
+    /// Loop iterations after which a thread suspends its path, for tests; by default as many as are safe.
+    pub iteration_limit: Option<u32>,
+    /// Maximum number of bytes of a film on the device at once; by default the adapter's binding limit.
     pub film_limit: Option<u64>,
     /// How long to wait for the device before giving it up.
     pub patience: Duration,
@@ -84,7 +84,7 @@ impl Default for GpuOptions {
             dispatch_target: BATCH_TARGET,
             specialise: true,
             samples_per_dispatch: None,
-            turn_limit: None,
+            iteration_limit: None,
             film_limit: None,
             patience: PATIENCE,
             injection: None,
@@ -103,7 +103,7 @@ impl GpuOptions {
     }
 }
 
-/// What the environment allows, if it restricts the search for adapters.
+/// Restriction of the search for adapters by the environment.
 fn restriction() -> String {
     let restriction = |backends| format!(" (WGPU_BACKEND allows only \"{backends}\")");
     std::env::var("WGPU_BACKEND").map_or(String::new(), restriction)
@@ -150,7 +150,7 @@ pub enum GpuError {
     },
 }
 
-/// What the renderer has done since it was created, for reports.
+/// Figures of a renderer since it was created, for reports.
 #[derive(Clone, Copy, Debug)]
 pub struct GpuReport {
     /// Number of dispatches so far.
@@ -159,7 +159,7 @@ pub struct GpuReport {
     pub dispatch_time: Duration,
     /// The clock that measured them: "timestamp queries" or "wall clock".
     pub timer: &'static str,
-    /// How often the current film was transferred to the host.
+    /// Number of readbacks of the current film.
     pub films: u64,
     /// Total time that the host spent adding its sums.
     pub film_time: Duration,

@@ -17,35 +17,35 @@ pub fn words(gpu: &Gpu, from: &wgpu::Buffer, count: usize) -> Result<Vec<u32>, S
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.copy_buffer_to_buffer(from, 0, &staging, 0, size);
     let submission = gpu.queue.submit([encoder.finish()]);
-    let mapping = asked(&staging);
+    let mapping = request_mapping(&staging);
     gpu.wait_unless(&submission, None)?;
     let view = view(&staging, &mapping)?;
     Ok(bytemuck::pod_collect_to_vec(&view[..size as usize]))
 }
 
-/// Requests a staging buffer, which becomes available once the submitted work is done.
-pub fn asked(staging: &wgpu::Buffer) -> Mapping {
+/// Maps a staging buffer, which becomes available once the submitted work is done.
+pub fn request_mapping(staging: &wgpu::Buffer) -> Mapping {
     let (sender, receiver) = mpsc::channel();
     staging.map_async(wgpu::MapMode::Read, .., move |result| {
-        // Nobody receives this if the samples were discarded, or after an error that was reported.
+        // There is no receiver if the samples were discarded, or after an error that was reported.
         let _ = sender.send(result);
     });
     receiver
 }
 
-/// Tells when a staging buffer is available.
+/// Receives a message when a staging buffer is available.
 pub type Mapping = Receiver<Result<(), wgpu::BufferAsyncError>>;
 
-/// The bytes of a staging buffer that was requested, after the submitted work is done.
+/// The bytes of a mapped staging buffer, after the submitted work is done.
 pub fn view(staging: &wgpu::Buffer, mapping: &Mapping) -> Result<wgpu::BufferView, String> {
     let mapped = mapping.try_recv().map_err(|_| "the device did not return its results".to_owned())?;
     mapped.map_err(|error| format!("reading results: {error}"))?;
     staging.get_mapped_range(..).map_err(|error| format!("reading results: {error}"))
 }
 
-/// The results of a completed dispatch. Each receipt serves one dispatch in flight at a time.
+/// Reads the results of a dispatch. Serves one dispatch in flight at a time.
 #[derive(Debug)]
-pub struct Receipt {
+pub struct DispatchReadback {
     /// `None` if the device has no clock.
     clock: Option<Clock>,
     /// Two timestamps, then the dispatch's counters.
@@ -86,15 +86,13 @@ const COUNTERS_SIZE: u64 = size_of::<GpuDispatchCounters>() as u64;
 /// Offset of a dispatch's counters in [`GpuCounters`].
 const COUNTERS_OFFSET: u64 = offset_of!(GpuCounters, dispatch) as u64;
 
-impl Receipt {
-    /// Creates a receipt for this device.
-    ///
+impl DispatchReadback {
     /// # Errors
     /// If the device runs out of memory.
-    pub fn new(gpu: &Gpu) -> Result<Receipt, String> {
+    pub fn new(gpu: &Gpu) -> Result<DispatchReadback, String> {
         let read = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
-        let staging = gpu.buffer("receipt", TIMES_SIZE + COUNTERS_SIZE, read)?;
-        Ok(Receipt { clock: Clock::new(gpu), staging, mapping: None })
+        let staging = gpu.buffer("readback", TIMES_SIZE + COUNTERS_SIZE, read)?;
+        Ok(DispatchReadback { clock: Clock::new(gpu), staging, mapping: None })
     }
 
     /// Whether the device's own clock times dispatches.
@@ -125,9 +123,9 @@ impl Receipt {
         encoder.copy_buffer_to_buffer(counters, COUNTERS_OFFSET, &self.staging, TIMES_SIZE, COUNTERS_SIZE);
     }
 
-    /// Call after the submission: requests the staging buffer.
-    pub fn ask(&mut self) {
-        self.mapping = Some(asked(&self.staging));
+    /// Call after the submission: maps the staging buffer.
+    pub fn request(&mut self) {
+        self.mapping = Some(request_mapping(&self.staging));
     }
 
     /// Reads the results of a completed dispatch.

@@ -1,15 +1,15 @@
 //! Reads a path that the device recorded.
 //!
-//! Twin: shaders/record.wgsl
+//! On the device: shaders/record.wgsl
 
 use crate::film::PixelSum;
 use crate::kernel::path_record::{PathRecord, RecordedHit, RecordedRay};
-use crate::kernel::{GpuAside, GpuRecordHead, GpuRecordedRay, NONE, word_count};
+use crate::kernel::{GpuRecordHead, GpuRecordedRay, GpuSuspendedPath, NONE, word_count};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-/// Number of words before those in which the path is put aside.
-pub fn first_aside(max_depth: u32) -> usize {
+/// Number of words before those of the suspended path.
+pub fn first_suspended(max_depth: u32) -> usize {
     first_of_ray(max_depth as usize)
 }
 
@@ -19,16 +19,16 @@ fn first_of_ray(number: usize) -> usize {
 
 /// The words for recording the path at `pixel`, including the shader's input.
 pub fn words_for([column, row]: [u32; 2], max_depth: u32) -> Vec<u32> {
-    let mut words = vec![0; first_aside(max_depth) + word_count::<GpuAside>()];
+    let mut words = vec![0; first_suspended(max_depth) + word_count::<GpuSuspendedPath>()];
     let head = GpuRecordHead { column, row, ..GpuRecordHead::default() };
     words[..word_count::<GpuRecordHead>()].copy_from_slice(bytemuck::cast_slice(&[head]));
     words
 }
 
-/// Returns whether the path was put aside and the shader must continue it; `rays` becomes the number of rays recorded
+/// Returns whether the path was suspended and the shader must resume it; `rays` becomes the number of rays recorded
 /// so far. Returns `None` if the path has not advanced since `rays` were recorded.
-pub fn is_aside(words: &[u32], max_depth: u32, rays: &mut u32) -> Option<bool> {
-    if read::<GpuAside>(words, first_aside(max_depth)).state == 0 {
+pub fn is_suspended(words: &[u32], max_depth: u32, rays: &mut u32) -> Option<bool> {
+    if read::<GpuSuspendedPath>(words, first_suspended(max_depth)).state == 0 {
         return Some(false);
     }
     let before = std::mem::replace(rays, read::<GpuRecordHead>(words, 0).ray_count);
@@ -77,19 +77,23 @@ mod tests {
     }
 
     #[test]
-    fn a_path_that_is_put_aside_is_continued_while_it_advances() {
+    fn suspended_path_resumes_while_it_advances() {
         let mut words = words_for([7, 5], 4);
         assert_eq!((read::<GpuRecordHead>(&words, 0).column, read::<GpuRecordHead>(&words, 0).row), (7, 5));
         let mut rays = 0;
-        assert_eq!((is_aside(&words, 4, &mut rays), rays), (Some(false), 0));
-        put(&mut words, first_aside(4), GpuAside { state: 1 << 16, ..GpuAside::default() });
+        assert_eq!((is_suspended(&words, 4, &mut rays), rays), (Some(false), 0));
+        put(
+            &mut words,
+            first_suspended(4),
+            GpuSuspendedPath { state: 1 << 16, ..GpuSuspendedPath::default() },
+        );
         for ray_count in [2, 3] {
             put(&mut words, 0, GpuRecordHead { ray_count, ..GpuRecordHead::default() });
-            assert_eq!((is_aside(&words, 4, &mut rays), rays), (Some(true), ray_count));
+            assert_eq!((is_suspended(&words, 4, &mut rays), rays), (Some(true), ray_count));
         }
-        assert_eq!(is_aside(&words, 4, &mut rays), None, "it stands still");
+        assert_eq!(is_suspended(&words, 4, &mut rays), None, "it stands still");
         // It has ended, with as many rays as before.
-        put(&mut words, first_aside(4), GpuAside::default());
-        assert_eq!(is_aside(&words, 4, &mut rays), Some(false));
+        put(&mut words, first_suspended(4), GpuSuspendedPath::default());
+        assert_eq!(is_suspended(&words, 4, &mut rays), Some(false));
     }
 }

@@ -60,19 +60,19 @@ impl SceneData {
     }
 }
 
-/// Loop turns that a thread of a dispatch may take over all its loops, not counting its last ray. After that, the
-/// thread puts its path aside, and the next dispatch continues it.
+/// Iterations that a thread of a dispatch may take over all its loops, not counting its last ray. After that, the
+/// thread suspends its path, and the next dispatch resumes it.
 ///
 /// This is half of the smallest limit known. llvmpipe ends every loop once the loops of a thread have taken 65,535
-/// turns together; it runs 8 threads in step, and turns that two of them take count twice.
-pub const TURN_LIMIT: u32 = 1 << 15;
+/// iterations together; it runs 8 threads in step, and iterations that two of them take count twice.
+pub const ITERATION_LIMIT: u32 = 1 << 15;
 
 /// Most samples in a block where the threads of a workgroup share its blocks. A thread that finds none left waits no
 /// longer than the others need for a block; each one costs the time of some rays.
 pub const SHARED_BLOCK: u32 = 16;
 
-/// Loop turns over lists for one ray. Twin: `turns_over_lists` in shaders/path.wgsl.
-pub fn turns_over_lists(features: &Features, prepared: &PreparedScene<f32>) -> u64 {
+/// Iterations over lists for one ray. Twin: `iterations_over_lists` in shaders/path.wgsl.
+pub fn iterations_over_lists(features: &Features, prepared: &PreparedScene<f32>) -> u64 {
     let is_in_hierarchy = features.hierarchy && features.surface == SurfaceRule::Exact;
     let listed = if is_in_hierarchy { 0 } else { prepared.opaque.len() + prepared.two_root.len() };
     (prepared.anchored.len() + listed) as u64
@@ -81,14 +81,14 @@ pub fn turns_over_lists(features: &Features, prepared: &PreparedScene<f32>) -> u
 /// The contents of a job's buffers, and what a host must know to run its kernel.
 #[derive(Clone, Debug)]
 pub struct Exported {
-    /// What the kernel must support. The host decides `aside`, which depends on its limit on loop turns.
+    /// What the kernel must support. The host decides `suspends`, which depends on its limit on iterations.
     pub features: Features,
     /// The bytes of the buffers of group 0, by binding: see shaders/bindings.wgsl.
     pub buffers: [Vec<u8>; 5],
     /// The index in the scene of each shading record's sphere.
     pub scene_index: Vec<u32>,
-    /// Loop turns over lists for one ray.
-    pub turns_over_lists: u64,
+    /// Iterations over lists for one ray.
+    pub iterations_over_lists: u64,
     /// Most samples in a block: a power of two.
     pub block_limit: u32,
     /// The origin of the buffers' coordinates, in scene coordinates.
@@ -104,7 +104,7 @@ impl Exported {
         Exported {
             features,
             buffers: data.buffers(&prepared).map(|(_, bytes)| bytes.into_owned()),
-            turns_over_lists: turns_over_lists(&features, &prepared),
+            iterations_over_lists: iterations_over_lists(&features, &prepared),
             block_limit: prepared.block_limit,
             origin: prepared.origin,
             scene_index: prepared.scene_index,
@@ -143,18 +143,18 @@ mod tests {
 
     #[test]
     fn a_ray_tests_all_spheres_that_are_in_no_hierarchy() {
-        let turns = |name: &str, surface: SurfaceRule| {
+        let iterations = |name: &str, surface: SurfaceRule| {
             let mut recipe = Recipe::find(name).unwrap();
             recipe.rules = Rules { surface, ..recipe.rules };
             let prepared = PreparedScene::<f32>::new(&recipe.job().unwrap());
             let listed = prepared.opaque.len() + prepared.two_root.len();
-            let turns = turns_over_lists(&prepared.features, &prepared) as usize;
-            (turns - prepared.anchored.len(), listed)
+            let iterations = iterations_over_lists(&prepared.features, &prepared) as usize;
+            (iterations - prepared.anchored.len(), listed)
         };
-        assert_eq!(turns("field:60", SurfaceRule::Exact).0, 0);
+        assert_eq!(iterations("field:60", SurfaceRule::Exact).0, 0);
         for (name, surface) in [("three-spheres", SurfaceRule::Exact), ("field:60", SurfaceRule::Book)] {
-            let (turns, listed) = turns(name, surface);
-            assert!(turns == listed && listed > 3, "{name}: {turns} {listed}");
+            let (tested, listed) = iterations(name, surface);
+            assert!(tested == listed && listed > 3, "{name}: {tested} {listed}");
         }
     }
 

@@ -8,12 +8,15 @@ use std::ops::Range;
 use std::time::Duration;
 
 /// Paths in the first dispatch: few enough for the slowest adapter.
-const FIRST_PATHS: f64 = 4096.0;
+pub const FIRST_PATHS: f64 = 4096.0;
 
 /// Largest growth in paths from one dispatch to the next, as a factor.
-const GROWTH_LIMIT: f64 = 4.0;
+pub const GROWTH_LIMIT: f64 = 4.0;
 
-/// Most blocks in a dispatch, which is the capacity of their buffer.
+/// The smallest and the largest budget in paths.
+pub const BUDGET_LIMITS: [f64; 2] = [64.0, 1e12];
+
+/// Maximum number of blocks in a dispatch: the capacity of their buffer.
 pub const BLOCK_LIMIT: usize = 1024;
 
 /// A dispatch takes at least this many times its overhead, so that most of its time is spent on paths.
@@ -22,19 +25,21 @@ const TIMES_OVERHEAD: f64 = 3.0;
 /// Longest time in seconds that a dispatch is given because of its overhead.
 const LONGEST_GOAL: f64 = 0.12;
 
-/// Growth of the shortest time from one dispatch to the next, so that it is forgotten in the end.
+/// Growth of the shortest time from one dispatch to the next, so that it is eventually forgotten.
 const FORGETTING: f64 = 1.002;
 
-/// Share of the overhead that remains from one dispatch to the next, so that the budget moves and it is measured anew.
+/// Share of the overhead that remains from one dispatch to the next, so that the budget moves and the overhead is measured
+/// again.
 const KEPT_OVERHEAD: f64 = 0.995;
 
-/// Two dispatches tell the overhead if their numbers of paths differ by this factor.
+/// Two dispatches reveal the overhead if their numbers of paths differ by this factor.
 const TELLING_FACTOR: f64 = 1.25;
 
 /// Weight of a new measurement of the overhead.
 const OVERHEAD_WEIGHT: f64 = 0.3;
 
-/// The number of paths that a dispatch should have, learnt from earlier dispatches.
+/// The number of paths that a dispatch should have, learnt from earlier dispatches. Twin: `Budget` in assets/web/film.js,
+/// which does not estimate the overhead.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     paths: f64,
@@ -73,7 +78,7 @@ impl Budget {
         } else {
             fitting.clamp(least, self.paths * GROWTH_LIMIT)
         }
-        .clamp(64.0, 1e12);
+        .clamp(BUDGET_LIMITS[0], BUDGET_LIMITS[1]);
     }
 
     /// The time that a dispatch should take, in seconds: the target, or more where most of it would be overhead.
@@ -81,7 +86,7 @@ impl Budget {
         self.target.as_secs_f64().max((TIMES_OVERHEAD * self.overhead).min(LONGEST_GOAL))
     }
 
-    /// Takes the time for a straight line over the paths; the overhead is where it begins.
+    /// Fits a straight line to time over paths; the overhead is its value at 0.
     fn learn_overhead(&mut self, paths: f64, took: f64) {
         self.shortest = (FORGETTING * self.shortest).min(took);
         self.overhead *= KEPT_OVERHEAD;
@@ -215,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn an_overhead_beyond_the_target_does_not_shrink_the_budget_to_nothing() {
+    fn overhead_beyond_target_keeps_a_budget() {
         for overhead in [0.003, 0.007, 0.012, 0.02, 0.035] {
             for per_path in [1e-7, 5e-6, 2e-5] {
                 let mut budget = Budget::new(Duration::from_millis(8));
@@ -231,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slow_device_without_overhead_keeps_to_the_target() {
+    fn slow_device_without_overhead_keeps_target() {
         for per_path in [1e-9, 1e-6, 2e-5, 1e-4] {
             let mut budget = Budget::new(Duration::from_millis(8));
             for took in &dispatches(&mut budget, 200, 0.0, per_path)[20..] {
@@ -245,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn blocks_are_taken_whole_where_there_is_room() {
+    fn blocks_are_taken_whole_where_they_fit() {
         let mut blocks = Blocks::of_range(0..64, &settings(false), 32);
         let mut taken = |most| blocks.take(most).0.iter().map(|block| block.count).collect::<Vec<u32>>();
         // Of a block that is too large, a power of two is taken; the rest is left in parts that double.

@@ -1,6 +1,6 @@
-//! Tracing a range of samples: splits it into dispatches, sends for the film, and traces missing samples again.
+//! Traces a range of samples: splits it into dispatches, reads the film back, and traces missing samples again.
 
-use super::dispatches::{BoundDispatch, Broken, CAUTION_LIMIT, CAUTION_SHIFT};
+use super::dispatches::{BoundDispatch, CAUTION_LIMIT, CAUTION_SHIFT, Incomplete};
 use super::film_buffers::Slab;
 use super::layout::{GpuBlock, GpuDispatch, tile_size};
 use super::loaded::Loaded;
@@ -16,15 +16,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 impl GpuRenderer {
-    /// Submits the dispatches of `range`; the last may still be in flight on return. A film that was sent for is added
-    /// to `film` as soon as the device has other work.
+    /// Submits the dispatches of `range`; the last may still be in flight on return. A readback in progress is added to
+    /// `film` as soon as the device has other work.
     pub(super) fn trace_range(
         &mut self,
         loaded: &mut Loaded,
         range: &Range<u64>,
         film: &mut Film,
         cancel: &AtomicBool,
-    ) -> Result<Stats, Broken> {
+    ) -> Result<Stats, Incomplete> {
         loaded.film.check_new(range, film)?;
         self.dispatches.check_whole()?;
         let settings = *loaded.job.settings();
@@ -35,10 +35,10 @@ impl GpuRenderer {
             let Slab { first_row, row_count, .. } = loaded.film.slabs[slab];
             let area = [settings.width, row_count];
             let most = self.dispatches.whole_samples(&loaded.features, &loaded.scene.prepared);
-            let most = most.filter(|_| !loaded.features.aside).unwrap_or(u64::MAX);
+            let most = most.filter(|_| !loaded.features.suspends).unwrap_or(u64::MAX);
             let tiles = settings.width.div_ceil(tile[0]) * row_count.div_ceil(tile[1]);
             let limit = loaded.scene.prepared.block_limit;
-            let limit = if loaded.features.aside { limit.min(SHARED_BLOCK) } else { limit };
+            let limit = if loaded.features.suspends { limit.min(SHARED_BLOCK) } else { limit };
             let mut left = Blocks::of_range(range.clone(), &settings, limit);
             loop {
                 let affordable = self.dispatches.budget(&loaded.features).paths();
@@ -59,11 +59,11 @@ impl GpuRenderer {
                     let tile_limit =
                         (affordable / (tile_pixels * samples).max(1)).min(self.dispatches.tile_limit());
                     let tile_count = evenly(tiles - first_tile, tile_limit);
-                    let order = GpuDispatch {
+                    let parameters = GpuDispatch {
                         first_tile,
                         tile_count,
                         block_count: blocks.len() as u32,
-                        turn_limit: self.dispatches.turn_limit(&loaded.features),
+                        iteration_limit: self.dispatches.iteration_limit(&loaded.features),
                         first_row,
                         row_count,
                         ..GpuDispatch::default()
@@ -73,53 +73,53 @@ impl GpuRenderer {
                         pipeline: loaded.kernel.pipeline.clone(),
                         scene: loaded.scene.group.clone(),
                         film: loaded.film.slabs[slab].group.clone(),
-                        order_buffer: loaded.film.order.clone(),
+                        parameters_buffer: loaded.film.parameters.clone(),
                         blocks_buffer: loaded.film.blocks.clone(),
                         counters: loaded.film.counters.clone(),
                         blocks: Arc::clone(&blocks),
-                        order,
+                        parameters,
                         paths: u64::from(tile_count) * tile_pixels * samples,
                         samples: pixels_within(area, tile, first_tile..first_tile + tile_count) * samples,
                     };
-                    self.send_off(slot, dispatch).map_err(failed)?;
+                    self.submit(slot, dispatch).map_err(failed)?;
                     first_tile += tile_count;
-                    if loaded.film.is_leaving() {
-                        stats.add(&loaded.film.arrive(&self.gpu, film)?);
+                    if loaded.film.is_reading_back() {
+                        stats.add(&loaded.film.finish_readback(&self.gpu, film)?);
                     }
                 }
             }
         }
-        stats.add(&loaded.film.arrive(&self.gpu, film)?);
+        stats.add(&loaded.film.finish_readback(&self.gpu, film)?);
         Ok(stats)
     }
 
     /// Submits a new dispatch, unless an injected fault is due.
-    fn send_off(&mut self, slot: usize, mut dispatch: BoundDispatch) -> Result<(), String> {
+    fn submit(&mut self, slot: usize, mut dispatch: BoundDispatch) -> Result<(), String> {
         let fault = self.inject(InjectionPoint::Dispatch, self.dispatches.count);
         if matches!(fault, Some(Fault::Short | Fault::AlwaysShort)) {
-            dispatch.order.block_count = 0;
+            dispatch.parameters.block_count = 0;
         }
         self.dispatches.submit(&self.gpu, slot, dispatch, 0)
     }
 
-    /// Sends for the film once it is complete.
-    pub(super) fn send_for_film(&mut self, loaded: &mut Loaded) -> Result<(), Broken> {
-        if !loaded.film.is_leaving() {
-            self.inject(InjectionPoint::Fetch, self.fetches);
-            self.fetches += 1;
+    /// Requests a readback of the film, after the dispatches in flight.
+    pub(super) fn read_film_back(&mut self, loaded: &mut Loaded) -> Result<(), Incomplete> {
+        if !loaded.film.is_reading_back() {
+            self.inject(InjectionPoint::Fetch, self.readbacks);
+            self.readbacks += 1;
             self.dispatches.drain(&self.gpu, None)?;
-            loaded.film.leave(&self.gpu);
+            loaded.film.request_readback(&self.gpu);
         }
         Ok(self.gpu.faults.check().map_err(failed)?)
     }
 
     /// Adds everything traced so far to the film.
-    pub(super) fn collect_all(&mut self, loaded: &mut Loaded, film: &mut Film) -> Result<Stats, Broken> {
+    pub(super) fn finish_all(&mut self, loaded: &mut Loaded, film: &mut Film) -> Result<Stats, Incomplete> {
         let mut stats = Stats::default();
-        // A film already on its way comes first.
+        // A readback already in progress comes first.
         while loaded.film.holds_samples() {
-            self.send_for_film(loaded)?;
-            stats.add(&loaded.film.arrive(&self.gpu, film)?);
+            self.read_film_back(loaded)?;
+            stats.add(&loaded.film.finish_readback(&self.gpu, film)?);
         }
         Ok(stats)
     }
@@ -128,7 +128,7 @@ impl GpuRenderer {
     ///
     /// # Errors
     /// If samples are still missing; the film is then unchanged.
-    pub(super) fn trace_again(
+    pub(super) fn retrace(
         &mut self,
         loaded: &mut Loaded,
         mut shortfall: String,
@@ -145,21 +145,21 @@ impl GpuRenderer {
             self.dispatches.caution += 1;
             self.messages
                 .push(format!("{shortfall}; the missing samples are traced again in smaller pieces"));
-            self.forget(loaded);
+            self.discard(loaded);
             let begin = Instant::now();
             let mut stats = Stats::default();
             let outcome = missing.iter().try_for_each(|range| {
                 stats.add(&self.trace_range(loaded, &range, film, cancel)?);
                 self.dispatches.drain(&self.gpu, Some(cancel))?;
-                loaded.film.note(range, begin.elapsed()).map_err(Broken::from)
+                loaded.film.note(range, begin.elapsed()).map_err(Incomplete::from)
             });
-            match outcome.and_then(|()| self.collect_all(loaded, film)) {
-                Ok(collected) => {
-                    stats.add(&collected);
+            match outcome.and_then(|()| self.finish_all(loaded, film)) {
+                Ok(added) => {
+                    stats.add(&added);
                     return Ok(stats);
                 }
-                Err(Broken::Ended(error)) => return Err(error),
-                Err(Broken::Short(reason)) => shortfall = reason,
+                Err(Incomplete::Failed(error)) => return Err(error),
+                Err(Incomplete::Short(reason)) => shortfall = reason,
             }
         }
         Err(failed(format!("{shortfall}; update the graphics driver or render on the CPU")))
@@ -176,7 +176,7 @@ fn pixels_within([width, height]: [u32; 2], tile: [u32; 2], tiles: Range<u32>) -
     tiles.map(pixels).sum()
 }
 
-/// Splits what is left into equal parts of at most `affordable` and at least one, so that no small dispatch remains.
+/// Splits the remaining tiles into equal parts of at most `affordable` and at least one, so that no small dispatch remains.
 fn evenly(left: u32, affordable: u64) -> u32 {
     let left = u64::from(left);
     left.div_ceil(left.div_ceil(affordable.max(1))) as u32
@@ -201,12 +201,12 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_is_split_into_equal_parts() {
+    fn remainder_is_split_into_equal_parts() {
         // Of ten with nine affordable, two parts of five rather than one of nine and one of one; at least one at a time.
         for (left, affordable, expected) in
             [(10, 100, 10), (10, 9, 5), (10, 4, 4), (9, 4, 3), (7, 0, 1), (u32::MAX, u64::MAX, u32::MAX)]
         {
-            assert_eq!(evenly(left, affordable), expected, "{left} of which {affordable} are affordable");
+            assert_eq!(evenly(left, affordable), expected, "{left}, {affordable} affordable");
         }
     }
 }

@@ -1,35 +1,83 @@
 //! Dependencies between rooms: each room may use only the rooms and crates listed for it. Lower layers come first, and
-//! an unused permission is an error. ARCHITECTURE.md describes the layers.
+//! an unused permission is an error. ARCHITECTURE.md describes the layers. Within rooms, no files import each other in
+//! a circle.
 #![allow(clippy::expect_used, reason = "a test that cannot read the sources has failed")]
 
+mod circles;
 mod rooms;
 
+use circles::{Module, circles};
 use rooms::{CRATES, ROOMS};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The code of each room, without comments and tests, which may use anything.
-fn rooms() -> BTreeMap<String, String> {
+/// The code of each file, without comments and tests, which may use anything.
+fn sources() -> BTreeMap<Module, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut rooms: BTreeMap<String, String> = BTreeMap::new();
+    let mut sources = BTreeMap::new();
     let mut places: Vec<PathBuf> = vec![root.clone()];
     while let Some(place) = places.pop() {
         if place.is_dir() {
             places
                 .extend(fs::read_dir(place).expect("readable").map(|entry| entry.expect("readable").path()));
         } else if place.extension().is_some_and(|ending| ending == "rs") && !place.ends_with("tests.rs") {
-            let name = place.strip_prefix(&root).expect("below src").with_extension("");
-            let room = name.iter().next().expect("a name").to_string_lossy();
+            let path = place.strip_prefix(&root).expect("below src").with_extension("");
+            let names = path.iter().map(|name| name.to_string_lossy().into_owned());
+            let module = names.filter(|name| !["lib", "mod"].contains(&name.as_str())).collect();
             let text = fs::read_to_string(&place).expect("UTF-8");
             let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
             let lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
-            rooms.entry(room.into_owned()).or_default().extend(lines.flat_map(|line| [line, "\n"]));
+            sources.insert(module, lines.flat_map(|line| [line, "\n"]).collect());
         }
     }
-    rooms.retain(|name, _| name != "lib" && name != "main");
-    assert!(!rooms.is_empty(), "the sources were not found");
+    assert!(!sources.is_empty(), "the sources were not found");
+    sources
+}
+
+/// The code of each room.
+fn rooms() -> BTreeMap<String, String> {
+    let mut rooms: BTreeMap<String, String> = BTreeMap::new();
+    for (module, code) in sources() {
+        if let Some(room) = module.first().filter(|room| *room != "main") {
+            *rooms.entry(room.clone()).or_default() += &code;
+        }
+    }
     rooms
+}
+
+#[test]
+fn files_do_not_import_each_other_in_circles() {
+    let found = circles(&sources());
+    assert!(found.is_empty(), "{found:#?}");
+}
+
+#[test]
+fn circles_are_found_through_re_exports_and_paths() {
+    let circle = |files: &[(&str, &str)]| {
+        let module =
+            |path: &str| path.split("::").filter(|name| !name.is_empty()).map(str::to_owned).collect();
+        let sources = files.iter().map(|(path, code)| (module(path), (*code).to_owned())).collect();
+        circles(&sources).into_iter().flatten().collect::<Vec<_>>()
+    };
+    let tree = |back: &'static str| {
+        let root = ("", "pub mod a;\npub mod b;\n");
+        let b = ("b", "mod part;\npub use part::{Part as Piece,\n    Other};\n");
+        circle(&[root, ("a", "use crate::b::{Piece, Other};\npub struct Own;\n"), b, ("b::part", back)])
+    };
+    for back in
+        ["use crate::a::Own;\n", "fn f() -> crate::a::Own {}\n", "use crate::{a};\nfn f() -> a::Own {}\n"]
+    {
+        assert_eq!(tree(back), ["a", "b::part"], "{back}");
+    }
+    for harmless in ["", "use std::a::Own;\n", "pub struct Own;\n"] {
+        assert!(tree(harmless).is_empty(), "{harmless}");
+    }
+    let parent = ("b", "mod part;\nuse part::Part;\npub struct Own(Part);\n");
+    assert!(
+        circle(&[parent, ("b::part", "pub struct Part(super::Own);\n")]).is_empty(),
+        "a module and its part"
+    );
 }
 
 #[test]

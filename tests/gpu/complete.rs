@@ -5,8 +5,8 @@ use super::gpu_common::{cpu, go_on, gpu, job_of, picture_mean, rendered};
 use glam::DVec3;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
-use weekender::job::render::{RenderError, RenderJob, Renderer, SamplerKind, Stats};
-use weekender::render_gpu::{Fault, FaultInjection, GpuOptions, InjectionPoint, TURN_LIMIT};
+use weekender::job::render::{Control, RenderError, RenderJob, Renderer, SamplerKind, Stats};
+use weekender::render_gpu::{Fault, FaultInjection, GpuOptions, ITERATION_LIMIT, InjectionPoint};
 use weekender::scene::builtin::{BOOK_CAMERA, BuiltinScene, book};
 use weekender::scene::{Camera, Material, Scene, Sky};
 use weekender::stages::{Rules, SurfaceRule};
@@ -17,7 +17,7 @@ fn few_pixels_with_many_samples() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [4, 4], 50, SamplerKind::Sobol, true);
-    let samples = 2 * u64::from(TURN_LIMIT);
+    let samples = 2 * u64::from(ITERATION_LIMIT);
     let [on_gpu, on_cpu] =
         [&mut gpu as &mut dyn Renderer, &mut cpu()].map(|r| picture_mean(&rendered(r, &job, samples)));
     assert!((on_gpu - on_cpu).abs() < 1e-4, "{on_gpu} {on_cpu}");
@@ -43,9 +43,9 @@ fn longest_paths_are_complete() {
     assert_eq!(gpu.record_path(&job, [2, 1], 3).unwrap().rays.len(), 10_000);
 }
 
-/// Putting paths aside does not change the film, nor with glass that stores the angle of incidence from ray to ray.
+/// Suspending paths does not change the film, even with glass that stores the angle of incidence from ray to ray.
 #[test]
-fn putting_paths_aside_keeps_film() {
+fn suspending_paths_keeps_film() {
     let three = (BuiltinScene::ALL[0].build)();
     let mut steep = three.clone();
     for named in &mut steep.0.materials {
@@ -54,7 +54,7 @@ fn putting_paths_aside_keeps_film() {
         }
     }
     let Some(mut at_once) = gpu(GpuOptions::default()) else { return };
-    let mut in_turns = gpu(GpuOptions { turn_limit: Some(1), ..GpuOptions::default() }).unwrap();
+    let mut in_turns = gpu(GpuOptions { iteration_limit: Some(1), ..GpuOptions::default() }).unwrap();
     for (scene, camera) in [three, (book(), BOOK_CAMERA), steep] {
         for (sampler, halves) in [(SamplerKind::Sobol, true), (SamplerKind::Independent, false)] {
             let job = job_of(&scene, camera, [20, 11], 30, sampler, halves);
@@ -65,10 +65,11 @@ fn putting_paths_aside_keeps_film() {
     assert!(in_turns.report().dispatches > 10 * at_once.report().dispatches);
 }
 
-/// A new picture does not resume the paths that an abandoned one put aside.
+/// A picture does not resume the suspended paths of an abandoned one.
 #[test]
 fn abandoned_paths_are_not_resumed() {
-    let options = GpuOptions { turn_limit: Some(8), samples_per_dispatch: Some(1), ..GpuOptions::default() };
+    let options =
+        GpuOptions { iteration_limit: Some(8), samples_per_dispatch: Some(1), ..GpuOptions::default() };
     let Some(mut used) = gpu(options.clone()) else { return };
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [5, 3], 30, SamplerKind::Independent, false);
@@ -92,6 +93,31 @@ fn abandoned_paths_are_not_resumed() {
     assert!(!messages.iter().any(|message| message.contains("traced again")), "{messages:?}");
 }
 
+/// A picture does not resume the paths of an earlier one whose rays no loop of the driver can trace.
+#[test]
+fn stuck_paths_are_not_resumed() {
+    let options =
+        GpuOptions { iteration_limit: Some(8), samples_per_dispatch: Some(1), ..GpuOptions::default() };
+    let Some(mut used) = gpu(options.clone()) else { return };
+    if !used.adapter().is_software {
+        return;
+    }
+    // Rays along the axis pass through the boxes of all balls and miss the balls.
+    let mut scene = Scene::default();
+    let matte = scene.add_material("matte", Material::Lambertian { albedo: DVec3::splat(0.5) });
+    for i in 0..20_000 {
+        scene.add_sphere(DVec3::new(0.8, 0.8, -2.0 - 1e-3 * f64::from(i)), 1.0, matte);
+    }
+    let camera = Camera { vfov_degrees: 0.1, ..Camera::default() };
+    let long = job_of(&scene, camera, [5, 3], 30, SamplerKind::Independent, false);
+    let error = used.accumulate(&long, 0..1, &mut long.new_film(), &go_on()).unwrap_err().to_string();
+    assert!(error.contains("a loop of this driver"), "{error}");
+    let (scene, camera) = (BuiltinScene::ALL[0].build)();
+    let job = job_of(&scene, camera, [5, 3], 30, SamplerKind::Independent, false);
+    assert!(rendered(&mut used, &job, 8) == rendered(&mut gpu(options).unwrap(), &job, 8));
+    assert_eq!(used.take_messages(), Vec::<String>::new());
+}
+
 /// A film keeps the samples it has; those still on the device are traced again and do not count twice.
 #[test]
 fn cancelled_samples_on_device_are_lost() {
@@ -102,11 +128,11 @@ fn cancelled_samples_on_device_are_lost() {
     let mut used = gpu(GpuOptions::default()).unwrap();
     for _ in 0..2 {
         let mut film = job.new_film();
-        used.advance(&job, 0..4, &mut film, &go_on()).unwrap();
-        used.advance(&job, 4..8, &mut film, &go_on()).unwrap();
-        let outcome = used.advance(&job, 8..12, &mut film, &AtomicBool::new(true));
+        used.advance(&job, 0..4, &mut film, &Control::deferring(&go_on())).unwrap();
+        used.advance(&job, 4..8, &mut film, &Control::deferring(&go_on())).unwrap();
+        let outcome = used.advance(&job, 8..12, &mut film, &Control::deferring(&AtomicBool::new(true)));
         assert!(matches!(outcome, Err(RenderError::Cancelled)), "{outcome:?}");
-        assert_eq!(used.collect(&mut film).unwrap(), Stats::default());
+        assert_eq!(used.finish(&mut film).unwrap(), Stats::default());
         let held = film.sample_count();
         assert!(held < 8, "the last samples cannot have come: {held}");
         used.accumulate(&job, held..8, &mut film, &go_on()).unwrap();
@@ -133,7 +159,7 @@ fn long_lists_are_complete_or_refused() {
     let [on_gpu, on_cpu] =
         [&mut gpu as &mut dyn Renderer, &mut cpu()].map(|r| picture_mean(&rendered(r, &job, 4)));
     assert!((on_gpu - on_cpu).abs() < 0.05, "{on_gpu} {on_cpu}");
-    let job = list(TURN_LIMIT);
+    let job = list(ITERATION_LIMIT);
     let outcome = gpu.accumulate(&job, 0..1, &mut job.new_film(), &go_on());
     if gpu.adapter().is_software {
         let error = outcome.unwrap_err().to_string();
@@ -158,10 +184,10 @@ fn omitted_samples_are_traced_again() {
         let mut short = gpu(options).unwrap();
         let mut film = job.new_film();
         for start in [0, 8, 16, 24] {
-            short.advance(&job, start..start + 8, &mut film, &go_on()).unwrap();
-            short.fetch().unwrap();
+            short.advance(&job, start..start + 8, &mut film, &Control::deferring(&go_on())).unwrap();
+            short.request_readback().unwrap();
         }
-        short.collect(&mut film).unwrap();
+        short.finish(&mut film).unwrap();
         assert!(film == expected, "{after}");
     }
 }
@@ -191,9 +217,9 @@ fn duplicate_samples_are_refused() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let expected = rendered(&mut gpu, &job, 4);
     assert!(gpu.report().films > 0 && gpu.report().film_time > Duration::ZERO);
-    gpu.advance(&job, 0..4, &mut job.new_film(), &go_on()).unwrap();
+    gpu.advance(&job, 0..4, &mut job.new_film(), &Control::deferring(&go_on())).unwrap();
     let mut film = expected.clone();
-    let outcome = gpu.collect(&mut film);
+    let outcome = gpu.finish(&mut film);
     assert!(matches!(outcome, Err(RenderError::Film(_))), "{outcome:?}");
     assert!(film == expected);
     assert!(rendered(&mut gpu, &job, 4) == expected);

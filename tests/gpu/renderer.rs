@@ -1,10 +1,14 @@
 //! The whole GPU renderer: known radiance, odd sizes, films continued by another backend, failures.
 
+use super::gpu_common::program::{Program, Programs};
 use super::gpu_common::{cpu, go_on, gpu, job_of, parted, picture_mean, rendered};
 use glam::DVec3;
 use std::sync::atomic::AtomicBool;
-use weekender::job::render::{RenderError, RenderJob, RenderSettings, Renderer, SamplerKind, Stats};
+use weekender::film::Film;
+use weekender::job::render::{Control, RenderError, RenderJob, RenderSettings, Renderer, SamplerKind, Stats};
+use weekender::kernel::{GpuDispatch, Tag, WORKGROUP_SIZE};
 use weekender::prepared::PreparedScene;
+use weekender::render_gpu::shader_source::EntryPoint;
 use weekender::render_gpu::{
     Fault, FaultInjection, GpuError, GpuOptions, GpuRenderer, InjectionPoint, adapters,
 };
@@ -92,8 +96,8 @@ fn specialised_is_general() {
         let job = job_of(&spheres, camera, [96, 54], 20, SamplerKind::Sobol, false);
         let (a, b) = (rendered(&mut specialised, &job, 1), rendered(&mut general, &job, 1));
         assert!(parted(&a, &b, 1e-3) <= 3, "{}", scene.name);
-        left_out[0] += specialised.kernel().left_out.len();
-        left_out[1] += general.kernel().left_out.len();
+        left_out[0] += specialised.diagnostics().kernel.left_out.len();
+        left_out[1] += general.diagnostics().kernel.left_out.len();
     }
     assert!(left_out[0] > left_out[1], "{left_out:?}");
 }
@@ -178,23 +182,26 @@ fn samples_stay_on_device_until_fetched() {
     let mut film = job.new_film();
     gpu.prepare(&job, &go_on()).unwrap();
     // The first pass fetches the film by itself, because the cost of fetching is still unknown.
-    let mut rays = gpu.advance(&job, 0..4, &mut film, &go_on()).unwrap().rays;
+    let mut rays = gpu.advance(&job, 0..4, &mut film, &Control::deferring(&go_on())).unwrap().stats().rays;
     assert_eq!((film.sample_count(), rays), (0, 0));
-    let second = gpu.advance(&job, 4..8, &mut film, &go_on()).unwrap();
+    let second = gpu.advance(&job, 4..8, &mut film, &Control::deferring(&go_on())).unwrap().stats();
     assert_eq!((film.samples().to_string().as_str(), second.paths), ("0..4", 50 * 43 * 4));
     rays += second.rays;
     // Samples on the device cannot be requested again.
-    assert!(matches!(gpu.advance(&job, 6..10, &mut film, &go_on()), Err(RenderError::Film(_))));
-    gpu.fetch().unwrap();
-    rays += gpu.advance(&job, 8..20, &mut film, &go_on()).unwrap().rays;
+    assert!(matches!(
+        gpu.advance(&job, 6..10, &mut film, &Control::deferring(&go_on())),
+        Err(RenderError::Film(_))
+    ));
+    gpu.request_readback().unwrap();
+    rays += gpu.advance(&job, 8..20, &mut film, &Control::deferring(&go_on())).unwrap().stats().rays;
     assert_eq!(film.samples().to_string(), "0..8");
-    rays += gpu.advance(&job, 20..32, &mut film, &go_on()).unwrap().rays;
-    rays += gpu.collect(&mut film).unwrap().rays;
+    rays += gpu.advance(&job, 20..32, &mut film, &Control::deferring(&go_on())).unwrap().stats().rays;
+    rays += gpu.finish(&mut film).unwrap().rays;
     assert!(film == expected);
     let again = gpu.accumulate(&job, 32..33, &mut film, &go_on()).unwrap();
     assert_eq!(again.paths, 50 * 43);
     assert!(rays > 50 * 43 * 32 && rays < 50 * 43 * 32 * 12, "{rays}");
-    assert_eq!(gpu.collect(&mut film).unwrap(), Stats::default());
+    assert_eq!(gpu.finish(&mut film).unwrap(), Stats::default());
 }
 
 #[test]
@@ -204,12 +211,12 @@ fn new_film_gets_no_old_samples() {
     let expected = rendered(&mut gpu, &job, 4);
     let mut dropped = job.new_film();
     gpu.prepare(&job, &go_on()).unwrap();
-    gpu.advance(&job, 0..4, &mut dropped, &go_on()).unwrap();
-    gpu.advance(&job, 4..8, &mut dropped, &go_on()).unwrap();
+    gpu.advance(&job, 0..4, &mut dropped, &Control::deferring(&go_on())).unwrap();
+    gpu.advance(&job, 4..8, &mut dropped, &Control::deferring(&go_on())).unwrap();
     gpu.prepare(&job, &go_on()).unwrap();
     assert!(rendered(&mut gpu, &job, 4) == expected);
     // Nor does a different job of the same size.
-    gpu.advance(&job, 0..4, &mut job.new_film(), &go_on()).unwrap();
+    gpu.advance(&job, 0..4, &mut job.new_film(), &Control::deferring(&go_on())).unwrap();
     let other = three_spheres([64, 36], 3, false);
     let film = rendered(&mut gpu, &other, 4);
     assert!(film != expected);
@@ -250,13 +257,29 @@ fn cpu_takes_over_after_fault() {
     }
 }
 
+/// The picture of a film, one word per pixel, red in the lowest byte, by the shader that live figures use.
+fn resolved(programs: &Programs, job: &RenderJob, film: &Film, transfer: Transfer) -> Vec<u32> {
+    let pixels = film.width() * film.height();
+    let sums: Vec<u64> = (0..pixels as usize).flat_map(|pixel| film.pixel_sum(pixel).0).collect();
+    let dispatch = GpuDispatch {
+        row_count: film.height(),
+        sample_count: film.sample_count() as u32,
+        transfer: transfer.tag(),
+        ..GpuDispatch::default()
+    };
+    let text = EntryPoint::Resolve.text();
+    let program = Program { text, entry_point: "resolve", overrides: Vec::new() };
+    let workgroups = pixels.div_ceil(WORKGROUP_SIZE);
+    programs.run(job, &program, dispatch, &sums, &vec![0; pixels as usize], workgroups)
+}
+
 #[test]
 fn resolve_matches_film() {
-    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let Some(programs) = Programs::open() else { return };
     let job = three_spheres([64, 37], 8, true);
-    let film = rendered(&mut gpu, &job, 8);
+    let film = rendered(&mut cpu(), &job, 8);
     for transfer in [Transfer::Linear, Transfer::Gamma2, Transfer::LinearAboveGamma2] {
-        let picture = gpu.resolve(&job, &film, transfer).unwrap();
+        let picture = resolved(&programs, &job, &film, transfer);
         let expected = film.to_rgb8(transfer);
         let mut apart = 0;
         for (word, rgb) in picture.iter().zip(expected.chunks_exact(3)) {
@@ -289,13 +312,13 @@ fn moving_camera_keeps_scene_on_device() {
     let Some(mut moved) = gpu(GpuOptions::default()) else { return };
     let job = job_of(&field(300).0, BOOK_CAMERA, [64, 36], 8, SamplerKind::Sobol, false);
     rendered(&mut moved, &job, 2);
-    assert!(!moved.kernel().hierarchy_time.is_zero());
+    assert!(!moved.diagnostics().kernel.hierarchy_time.is_zero());
     let settings = RenderSettings { width: 48, height: 27, ..*job.settings() };
     let low = DVec3::new(13.0, 0.05, 3.0);
     for look_from in [BOOK_CAMERA.look_from * 1.1, low] {
         let next = job.seen_by(Camera { look_from, ..BOOK_CAMERA }, settings).unwrap();
         let film = rendered(&mut moved, &next, 2);
-        assert!(moved.kernel().hierarchy_time.is_zero(), "{:?}", moved.kernel());
+        assert!(moved.diagnostics().kernel.hierarchy_time.is_zero(), "{:?}", moved.diagnostics().kernel);
         let Some(mut fresh) = gpu(GpuOptions::default()) else { return };
         assert!(film.halves() == rendered(&mut fresh, &next, 2).halves());
         // Near the ground, the ground is measured from the point below the eye.

@@ -1,6 +1,7 @@
 //! Helpers that the GPU tests share.
 #![allow(dead_code, reason = "each test uses some of it")]
 
+pub mod program;
 #[path = "../skip_common/mod.rs"]
 mod skip_common;
 

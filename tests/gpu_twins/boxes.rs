@@ -1,13 +1,12 @@
 //! Boxes of the hierarchies.
 
-use super::gpu_common::gpu;
+use super::gpu_common::program::Programs;
+use super::probe::Probe;
 use super::{L, Words, float, list, rays, run, uniform, unit_vector, vector, words};
 use glam::DVec3;
 use weekender::kernel::{NONE, Node};
 use weekender::render_cpu::bvh::{misses_box, slabs_of};
 use weekender::render_cpu::lanes::Single;
-use weekender::render_gpu::GpuOptions;
-use weekender::render_gpu::shader_source::Probe;
 use weekender::stages::DielectricLaws;
 
 /// A ray, a box that it hits in about half the cases, the length of the ray, and the largest coordinate.
@@ -52,9 +51,9 @@ fn slab(origin: [f32; 3], direction: [f32; 3], low: [f32; 3], high: [f32; 3], li
 
 #[test]
 fn boxes_are_met_alike() {
-    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let Some(gpu) = Programs::open() else { return };
     let (mut met, mut missed) = (0, 0);
-    for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Box, ray_and_box) {
+    for (input, output) in run(&gpu, DielectricLaws::Schlick, Probe::Box, ray_and_box) {
         let (low, high) = (list(vector(&input, 8)), list(vector(&input, 11)));
         let (limit, extent) = (float(&input, 14), float(&input, 15));
         let node = Node { low, first: 0, high, count: 1 };

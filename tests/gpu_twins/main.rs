@@ -8,24 +8,24 @@ mod names;
 mod numbers;
 #[path = "../oracle/mod.rs"]
 mod oracle;
+mod probe;
 mod surfaces;
 
 use glam::DVec3;
-use gpu_common::gpu;
-use oracle::{laine_karras, pascal, pixel_key, sin_cos_turns, unit_float};
+use gpu_common::program::Programs;
+use oracle::{pixel_key, sin_cos_turns, sobol_numbers, unit_float};
+use probe::{PROBE_STRIDE, Probe};
 use weekender::film::FIXED_POINT_MAX;
 use weekender::job::render::{RenderJob, RenderSettings};
-use weekender::kernel::sampling::{GOLDEN_RATIO, LENS_BLOCK, mix32, pcg4d};
-use weekender::kernel::{AnchoredSphere, CameraTable, PROBE_STRIDE};
+use weekender::kernel::sampling::pcg4d;
+use weekender::kernel::{AnchoredSphere, CameraTable};
 use weekender::render_cpu::camera::{lens_ray, pinhole_ray, screen};
 use weekender::render_cpu::lanes::{Scalar, Single, V3, Wide, Word};
-use weekender::render_cpu::material::{Surface, incidence_of, reflectance, refracted, scatter};
+use weekender::render_cpu::material::{Material, incidence_of, reflectance, refracted, scatter};
 use weekender::render_cpu::sphere::{
     NONE, Rays, Spheres, anchored_root, anchored_surface_point, book_root, near_root, nearest_root,
     speck_surface_point, surface_point,
 };
-use weekender::render_gpu::shader_source::Probe;
-use weekender::render_gpu::{GpuOptions, GpuRenderer};
 use weekender::scene::{Camera, Scene};
 use weekender::stages::{DielectricLaws, Rules};
 
@@ -59,13 +59,13 @@ fn job(laws: DielectricLaws) -> RenderJob {
 
 /// Runs a probe on `COUNT` inputs.
 fn run(
-    gpu: &mut GpuRenderer,
+    gpu: &Programs,
     laws: DielectricLaws,
     probe: Probe,
     input: impl Fn(u32) -> Words,
 ) -> Vec<(Words, Words)> {
     let inputs: Vec<Words> = (0..COUNT as u32).map(input).collect();
-    let output = gpu.probe(&job(laws), probe, &inputs.concat()).unwrap();
+    let output = probe::run(gpu, &job(laws), probe, &inputs.concat());
     inputs.into_iter().zip(output.chunks_exact(PROBE_STRIDE).map(|w| w.try_into().unwrap())).collect()
 }
 
@@ -173,9 +173,9 @@ fn compare_keys(ulps: &mut Ulps, got: u32, expected: i32, what: &Words) {
 
 #[test]
 fn intersections() {
-    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let Some(gpu) = Programs::open() else { return };
     let mut ulps = Ulps::default();
-    for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Roots, ray_words) {
+    for (input, output) in run(&gpu, DielectricLaws::Schlick, Probe::Roots, ray_words) {
         let rays = rays(&input);
         let spheres = || Spheres::splat(L, [8, 9, 10, 11].map(|i| float(&input, i)), Word(1));
         let near = near_root(L, &rays, &spheres()).key(L);
@@ -203,7 +203,7 @@ fn intersections() {
         }
         words
     };
-    for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Surface, surface) {
+    for (input, output) in run(&gpu, DielectricLaws::Schlick, Probe::Surface, surface) {
         let [curvature, t, radius] = [11, 12, 13].map(|i| number(&input, i));
         let point = surface_point(L, &rays(&input), t, vector(&input, 8), curvature, radius);
         ulps.compare(&list(vector(&output, 0)), &list(point.position), 4.0);
@@ -219,9 +219,9 @@ fn intersections() {
 
 #[test]
 fn anchored_spheres() {
-    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let Some(gpu) = Programs::open() else { return };
     let (mut roots, mut points) = (Ulps::default(), Ulps::default());
-    for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Anchored, |i| {
+    for (input, output) in run(&gpu, DielectricLaws::Schlick, Probe::Anchored, |i| {
         let [x, height, z, code] = uniform(i, 30);
         let [a, b, ..] = uniform(i, 31);
         // Downwards, not grazing, onto a large ground.
@@ -256,11 +256,11 @@ fn anchored_spheres() {
 
 #[test]
 fn scattering() {
-    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let Some(gpu) = Programs::open() else { return };
     for laws in [DielectricLaws::RefractOnly, DielectricLaws::TotalReflection, DielectricLaws::Schlick] {
         let mut ulps = Ulps::default();
         let mut parted = 0;
-        for (input, output) in run(&mut gpu, laws, Probe::Scatter, |i| {
+        for (input, output) in run(&gpu, laws, Probe::Scatter, |i| {
             let [index, weight, coin, front] = uniform(i, 40);
             let (weight, index) = match i % 3 {
                 0 => (1.0, 0.0),
@@ -283,12 +283,12 @@ fn scattering() {
             words
         }) {
             let [weight, refraction_index, inverse_index, f0] = [0, 1, 2, 3].map(|i| number(&input, i));
-            let surface: Surface<L> = Surface { weight, refraction_index, inverse_index, f0 };
+            let material: Material<L> = Material { weight, refraction_index, inverse_index, f0 };
             let (cosine, coin) = (number(&input, 13), number(&input, 15));
             let (d, n, unit) = (vector(&input, 4), vector(&input, 7), vector(&input, 10));
             let front = input[14] != 0;
             let sent =
-                scatter::<L, true>(L, &surface, laws, d, n, &incidence_of(L, cosine), front, unit, coin);
+                scatter::<L, true>(L, &material, laws, d, n, &incidence_of(L, cosine), front, unit, coin);
             let flags = u32::from(sent.refracts) | u32::from(sent.is_metal) << 1;
             if output[3] != flags {
                 // The random number is within rounding of the reflectance.
@@ -311,13 +311,13 @@ fn scattering() {
 
 #[test]
 fn camera_rays() {
-    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let Some(gpu) = Programs::open() else { return };
     let job = job(DielectricLaws::Schlick);
     let settings = job.settings();
     let camera =
         CameraTable::<f32>::new(job.camera(), settings.width, settings.height, DVec3::ZERO).map(Wide::splat);
     let mut ulps = Ulps::default();
-    for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Camera, |i| {
+    for (input, output) in run(&gpu, DielectricLaws::Schlick, Probe::Camera, |i| {
         let [x, y, a, b] = uniform(i, 50);
         let [c, d, ..] = uniform(i, 51);
         words(&[(x * 640.0).floor(), (y * 360.0).floor(), a, b, c - 0.5, d - 0.5])

@@ -1,20 +1,19 @@
 //! Angles of incidence, and the stages' rules that replace the book's final ones.
 
-use super::gpu_common::gpu;
+use super::gpu_common::program::Programs;
+use super::probe::Probe;
 use super::{L, Ulps, float, job, list, run, uniform, unit_vector, vector, words};
 use weekender::render_cpu::lanes::Single;
 use weekender::render_cpu::material::{hemisphere, incidence_of, incidence_of_sine2};
-use weekender::render_gpu::GpuOptions;
-use weekender::render_gpu::shader_source::Probe;
 use weekender::stages::DielectricLaws;
 
 /// Cosines of rays from either side, some of which rounding puts beyond 1.
 #[test]
 fn incidence_and_stage_rules() {
-    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let Some(gpu) = Programs::open() else { return };
     let width = job(DielectricLaws::Schlick).settings().width;
     let (mut ulps, mut directions) = (Ulps::default(), Ulps::default());
-    for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Incidence, |i| {
+    for (input, output) in run(&gpu, DielectricLaws::Schlick, Probe::Incidence, |i| {
         let [cosine, sine2, ..] = uniform(i, 60);
         let (normal, unit) = (unit_vector(i, 61), unit_vector(i, 62));
         let [cosine, sine2] = [2.2 * cosine - 1.1, 1.1 * sine2];

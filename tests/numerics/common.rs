@@ -7,7 +7,7 @@ use weekender::film::Film;
 use weekender::job::render::{RenderJob, RenderSettings, Renderer, Stats};
 use weekender::kernel::Real;
 use weekender::render_cpu::lanes::{Float, Lanes, V3, Wide, splat3};
-use weekender::render_cpu::material::Surface;
+use weekender::render_cpu::material::Material as LaneMaterial;
 use weekender::render_cpu::sphere::{NONE, Rays};
 use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa};
 use weekender::scene::{Camera, Material, Scene};
@@ -106,9 +106,9 @@ pub fn exact_roots(origin: DVec3, direction: DVec3, center: DVec3, radius: f64) 
     (d >= 0.0).then(|| [h - (a * d).sqrt(), h + (a * d).sqrt()].map(|q| q / a))
 }
 
-/// The surface of glass.
-pub fn glass_surface<L: Lanes>(l: L, index: f64) -> Surface<L> {
-    Surface {
+/// Glass of this refraction index.
+pub fn glass_lanes<L: Lanes>(l: L, index: f64) -> LaneMaterial<L> {
+    LaneMaterial {
         weight: l.constant(-0.0),
         refraction_index: l.constant(index),
         inverse_index: l.constant(1.0 / index),

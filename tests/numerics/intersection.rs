@@ -238,11 +238,11 @@ fn chord_error<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) 
     let t = distance::<L>(near_root(l, &rays, &Spheres::splat(l, sphere, number)).key(l))?;
     let point = surface_at(l, &rays, t, center, radius);
     let cosine = -rays.direction.dot(point.outward);
-    let surface = glass_surface(l, 1.5);
+    let material = glass_lanes(l, 1.5);
     let zero = v3(l, DVec3::ZERO);
     let bounced = scatter::<L, true>(
         l,
-        &surface,
+        &material,
         DielectricLaws::RefractOnly,
         rays.direction,
         point.outward,

@@ -151,8 +151,8 @@ fn grazing<const FUSED: bool>() {
     let mut random = Random::new(7);
     for step in 0..20_000 {
         let index = if step == 0 { 1.0 } else { random.log_within(1e-3, 1e3) };
-        let surface = glass_surface(l, index);
-        assert_eq!(reflectance(l, l.constant(0.0), surface.f0).0, 1.0, "index {index}");
+        let material = glass_lanes(l, index);
+        assert_eq!(reflectance(l, l.constant(0.0), material.f0).0, 1.0, "index {index}");
         let normal = random.direction();
         let direction = perpendicular(normal, &mut random);
         for front in [false, true] {
@@ -163,7 +163,7 @@ fn grazing<const FUSED: bool>() {
                 let (direction, normal) = (v3(l, direction), v3(l, normal));
                 scatter::<_, true>(
                     l,
-                    &surface,
+                    &material,
                     laws,
                     direction,
                     normal,

@@ -22,7 +22,7 @@ fn drift<L: Lanes>(l: L, center: DVec3, radius: f64, sine: f64) -> [f64; 2] {
         left: l.splat_u(NONE),
         inside: number,
     };
-    let surface = glass_surface(l, 1.5);
+    let material = glass_lanes(l, 1.5);
     let zero = l.constant(0.0);
     let rounded_center = vector::<L>(v3(l, center));
     let mut largest = [0.0_f64; 2];
@@ -37,7 +37,7 @@ fn drift<L: Lanes>(l: L, center: DVec3, radius: f64, sine: f64) -> [f64; 2] {
         let inward = V3 { x: -point.outward.x, y: -point.outward.y, z: -point.outward.z };
         let bounced = scatter::<L, true>(
             l,
-            &surface,
+            &material,
             DielectricLaws::Schlick,
             rays.direction,
             inward,

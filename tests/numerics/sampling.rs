@@ -1,11 +1,11 @@
 //! Random numbers: cases 26 and 27, and the lanes against their scalar oracle.
 
 use crate::common::{Random, first};
-use crate::oracle::{self, laine_karras, pascal, pixel_key, sin_cos_turns};
+use crate::oracle::{self, laine_karras, pascal, pixel_key, sin_cos_turns, sobol_numbers};
 use proptest::prelude::*;
 use std::collections::HashSet;
 use weekender::job::render::{RenderSettings, SAMPLE_LIMIT, SamplerKind};
-use weekender::kernel::sampling::{GOLDEN_RATIO, LENS_BLOCK, SampleBlock, mix32, pcg4d};
+use weekender::kernel::sampling::{GOLDEN_RATIO, SampleBlock, mix32, pcg4d};
 use weekender::render_cpu::lanes::{Double, Lanes, MAX_LANES, Reference, Scalar, Single, Wide, unit_float};
 use weekender::render_cpu::rng;
 
@@ -27,12 +27,7 @@ pub fn numbers(settings: &RenderSettings, pixel: u32, index: u32, bounce: u32) -
             let half_count = settings.half_count() as u32;
             let key = pixel_key(settings.seed, index % half_count, pixel);
             let reversed = (index / half_count).reverse_bits();
-            let pair = |block: u32| {
-                let u = laine_karras(reversed, mix32(key.wrapping_add(block.wrapping_mul(GOLDEN_RATIO))));
-                [u, pascal(u)]
-            };
-            let ([a, b], [c, d]) = (pair(bounce), pair(bounce.wrapping_add(LENS_BLOCK)));
-            [a, b, c, d]
+            sobol_numbers(key, reversed, bounce)
         }
     }
 }
@@ -131,12 +126,43 @@ fn assert_twins<L: Lanes>(l: L) {
         }
         let (keys, counters) = (l.load_u(&Wide(keys)), l.load_u(&Wide(counters)));
         let stream = keys + l.splat_u(bounce.wrapping_mul(GOLDEN_RATIO));
-        let first_pair = rng::sobol_pair(l, counters, stream);
-        let lens_pair = rng::sobol_pair(l, counters, rng::lens_stream_of(l, stream));
-        for (which, found) in first_pair.into_iter().chain(lens_pair).enumerate() {
+        let found = rng::numbers(l, &settings, l.load_u(&Wide(a)), counters, keys, stream, true);
+        for (which, found) in found.into_iter().flatten().enumerate() {
             same(found, "numbers", &|i| numbers(&settings, pixel(i), index(i), bounce)[which]);
         }
-        const { assert!(LENS_BLOCK > weekender::job::render::DEPTH_LIMIT) };
+    }
+}
+
+/// Pixel, lens and the first two bounces are points of one net of more dimensions: their blocks reach more boxes of equal
+/// size than pairs that are independent of each other, which reach 63 %.
+#[test]
+fn first_rays_are_evenly_distributed_together() {
+    let settings = settings(SamplerKind::Sobol, true, 1);
+    let pairs = |index: u32| {
+        let [lens, bounces] = [0, 1].map(|bounce| numbers(&settings, 7, index, bounce));
+        let second = numbers(&settings, 7, index, 2);
+        [[lens[0], lens[1]], [lens[2], lens[3]], [bounces[0], bounces[1]], [second[0], second[1]]]
+    };
+    for (first, other) in [(0, 1), (0, 2), (1, 2), (0, 3), (2, 3)] {
+        for bits in [4, 5, 6, 7] {
+            let (mut reached, mut boxes) = (0, 0);
+            for block in 0..64 {
+                for split in 1..bits {
+                    for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                        let cells: HashSet<u32> = (0..1 << bits)
+                            .map(|sample| {
+                                let pairs = pairs(2 * ((block << bits) + sample));
+                                pairs[first][i] >> (32 - split) << 16 | pairs[other][j] >> (32 - bits + split)
+                            })
+                            .collect();
+                        (reached, boxes) = (reached + cells.len(), boxes + (1 << bits));
+                    }
+                }
+            }
+            let share = reached as f64 / f64::from(boxes);
+            println!("pairs {first} and {other}, {} samples: {share:.3}", 1 << bits);
+            assert!(share > 0.66, "pairs {first} and {other}, {} samples: {share}", 1 << bits);
+        }
     }
 }
 

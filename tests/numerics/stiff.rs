@@ -3,7 +3,6 @@
 use crate::common::*;
 use crate::film::trace_tables;
 use glam::DVec3;
-use weekender::kernel::COUNT_MASK;
 use weekender::prepared::PreparedScene;
 use weekender::prepared::hierarchy::{DEPTH_LIMIT, Effort, Hierarchy};
 use weekender::prepared::wide_bvh::WideBvh;
@@ -56,9 +55,7 @@ fn shells_and_crowds_have_low_trees() {
         order.sort_unstable();
         assert!(order.iter().enumerate().all(|(place, rank)| place == *rank as usize), "each once");
         let mut levels = vec![1; hierarchy.nodes.len()];
-        for (index, node) in
-            hierarchy.nodes.iter().enumerate().filter(|(_, node)| node.count & COUNT_MASK == 0)
-        {
+        for (index, node) in hierarchy.nodes.iter().enumerate().filter(|(_, node)| node.sphere_count() == 0) {
             levels[node.first as usize] = levels[index] + 1;
             levels[node.first as usize + 1] = levels[index] + 1;
         }

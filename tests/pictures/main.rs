@@ -271,8 +271,11 @@ fn a_pfm_may_have_any_line_end_scale_and_order() {
     }
 }
 
+/// Names and contents of chunks.
+type Chunks<'a> = &'a [(png::chunk::ChunkType, &'a [u8])];
+
 /// Bytes of a grey ramp in a PNG with these chunks before its pixels.
-fn png_with(chunks: &[(png::chunk::ChunkType, &[u8])], stored: impl Fn(f64) -> f64) -> Vec<u8> {
+fn png_with(chunks: Chunks<'_>, stored: impl Fn(f64) -> f64) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, 64, 48);
     encoder.set_color(png::ColorType::Rgb);
@@ -290,10 +293,10 @@ fn ramp(index: u32) -> f64 {
 
 #[test]
 fn what_a_png_says_about_its_colours_is_used_or_noted() {
-    use png::chunk::{ChunkType, cHRM, cICP, gAMA, sRGB};
+    use png::chunk::{cHRM, cICP, gAMA, sRGB};
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("a.png");
-    let read = |chunks: &[(ChunkType, &[u8])], stored: &dyn Fn(f64) -> f64, encoding: Option<Encoding>| {
+    let read = |chunks: Chunks<'_>, stored: &dyn Fn(f64) -> f64, encoding: Option<Encoding>| {
         std::fs::write(&path, png_with(chunks, stored)).unwrap();
         Picture::read(&path, encoding).unwrap()
     };
@@ -304,7 +307,7 @@ fn what_a_png_says_about_its_colours_is_used_or_noted() {
     let gamma = |gamma: f64| ((100_000.0 * gamma).round() as u32).to_be_bytes();
     let srgb = |x: f64| Encoding::Srgb.displayed(x, 0, 1);
     let (linear, square, other) = (|x: f64| x, f64::sqrt, |x: f64| x.powf(1.0 / 1.8));
-    let stated: [(&[(ChunkType, &[u8])], &dyn Fn(f64) -> f64); 7] = [
+    let stated: [(Chunks<'_>, &dyn Fn(f64) -> f64); 7] = [
         (&[(sRGB, &[0])], &srgb),
         (&[(gAMA, &gamma(1.0 / 2.2))], &srgb),
         (&[(gAMA, &gamma(1.0))], &linear),
@@ -329,7 +332,7 @@ fn what_a_png_says_about_its_colours_is_used_or_noted() {
         .into_iter()
         .flat_map(u32::to_be_bytes)
         .collect();
-    let noted: [(&[(ChunkType, &[u8])], &str); 3] = [
+    let noted: [(Chunks<'_>, &str); 3] = [
         (&[(cICP, &[9, 16, 0, 1])], "PQ"),
         (&[(cICP, &[12, 13, 0, 1])], "Display P3"),
         (&[(cHRM, &primaries)], "its colours are not those of sRGB"),

@@ -7,7 +7,9 @@ use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 use weekender::backends::BackendChoice;
 use weekender::film::{Film, PixelSum};
-use weekender::job::render::{BackendInfo, RenderError, RenderJob, RenderSettings, Renderer, Stats};
+use weekender::job::render::{
+    BackendInfo, Control, Outcome, RenderError, RenderJob, RenderSettings, Renderer, Stats,
+};
 use weekender::progressive::{EndReason, Phase, Picture, Plan, Progressive, RenderRequest, Status};
 use weekender::render_cpu::CpuOptions;
 use weekender::scene::{Camera, Scene};
@@ -72,6 +74,31 @@ impl Fake {
         }
     }
 
+    /// Adds samples to the film, or does what `pass` says.
+    fn add(&mut self, range: Range<u64>, film: &mut Film, cancel: &AtomicBool) -> Result<Stats, RenderError> {
+        if let Some(mut pass) = self.pass.take() {
+            let outcome = pass(self, range, film, cancel);
+            self.pass = Some(pass);
+            return outcome;
+        }
+        if self.fails_at.is_some_and(|at| range.end > at) {
+            return Err(pulled_out(self.name));
+        }
+        assert!(self.panics_at.is_none_or(|at| range.end <= at), "a slip of the tracer");
+        for index in range.clone() {
+            if cancel.load(Ordering::Relaxed) {
+                return Err(RenderError::Cancelled);
+            }
+            std::thread::sleep(self.pause);
+            let half_count = film.halves().len();
+            let half = &mut film.halves_mut()[index as usize % half_count];
+            half.iter_mut().enumerate().for_each(|(pixel, sum)| sum.add((self.value)(pixel, index)));
+        }
+        let samples = range.end - range.start;
+        film.record(range, 0)?;
+        Ok(Stats { paths: samples * 4, rays: samples * 8, ..Stats::default() })
+    }
+
     pub fn preparing_for(self, time: Duration) -> Self {
         let prepares = move |_: &AtomicBool| {
             std::thread::sleep(time);
@@ -113,48 +140,38 @@ impl Renderer for Fake {
         self.prepares.as_mut().map_or(Ok(()), |prepares| prepares(cancel))
     }
 
-    fn try_out(&mut self, _: &mut Film, one_in: usize, _: &AtomicBool) -> Option<Duration> {
+    fn estimate_sample_time(&mut self, one_in: usize, _: &AtomicBool) -> Option<Duration> {
         self.trial.map(|[quick, thorough]| if one_in > 16 { quick } else { thorough })
-    }
-
-    fn advance_unless(
-        &mut self,
-        job: &RenderJob,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-        stop: &AtomicBool,
-    ) -> Result<Option<Stats>, RenderError> {
-        if !self.waits_for_stop {
-            return self.advance(job, range, film, cancel).map(Some);
-        }
-        while !stop.load(Ordering::Relaxed) {
-            std::thread::sleep(Duration::from_millis(1));
-        }
-        Ok(None)
     }
 
     fn advance(
         &mut self,
-        job: &RenderJob,
+        _: &RenderJob,
         range: Range<u64>,
         film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        if self.holds == 0 {
-            return self.accumulate(job, range, film, cancel);
+        &Control { cancel, stop, may_defer }: &Control,
+    ) -> Result<Outcome, RenderError> {
+        // The first pass has no flag to stop it.
+        if self.waits_for_stop && may_defer && film.sample_count() > 0 {
+            while !stop.load(Ordering::Relaxed) {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            return Ok(Outcome::Withdrawn);
+        }
+        if self.holds == 0 || !may_defer {
+            return self.add(range, film, cancel).map(Outcome::from);
         }
         std::thread::sleep(PAUSE);
         (self.on_pass)(&range, self.good_collections);
         self.held.push_back(range);
         if self.held.len() <= self.holds {
-            return Ok(Stats::default());
+            return Ok(Stats::default().into());
         }
         let due = self.held.pop_front().unwrap();
-        self.accumulate(job, due, film, cancel)
+        self.add(due, film, cancel).map(Outcome::from)
     }
 
-    fn collect(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
+    fn finish(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
         let held = std::mem::take(&mut self.held);
         if self.holds > 0 {
             self.good_collections =
@@ -162,39 +179,9 @@ impl Renderer for Fake {
         }
         let mut stats = Stats::default();
         for range in held {
-            stats.add(&self.accumulate(&job(2), range, film, &AtomicBool::new(false))?);
+            stats.add(&self.add(range, film, &AtomicBool::new(false))?);
         }
         Ok(stats)
-    }
-
-    fn accumulate(
-        &mut self,
-        _: &RenderJob,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        if let Some(mut pass) = self.pass.take() {
-            let outcome = pass(self, range, film, cancel);
-            self.pass = Some(pass);
-            return outcome;
-        }
-        if self.fails_at.is_some_and(|at| range.end > at) {
-            return Err(pulled_out(self.name));
-        }
-        assert!(self.panics_at.is_none_or(|at| range.end <= at), "a slip of the tracer");
-        for index in range.clone() {
-            if cancel.load(Ordering::Relaxed) {
-                return Err(RenderError::Cancelled);
-            }
-            std::thread::sleep(self.pause);
-            let half_count = film.halves().len();
-            let half = &mut film.halves_mut()[index as usize % half_count];
-            half.iter_mut().enumerate().for_each(|(pixel, sum)| sum.add((self.value)(pixel, index)));
-        }
-        let samples = range.end - range.start;
-        film.record(range, 0)?;
-        Ok(Stats { paths: samples * 4, rays: samples * 8, ..Stats::default() })
     }
 }
 

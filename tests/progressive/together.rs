@@ -1,21 +1,29 @@
 //! Several renderers working on one film, of which some fail.
 
 use super::common::{Fake, PATIENCE, expected, forgetful, job, scripted, spoiling};
+use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::channel;
 use weekender::backends::Together;
 use weekender::film::Film;
-use weekender::job::render::{BackendInfo, RenderError, Renderer, Stats};
+use weekender::job::render::{BackendInfo, Control, Outcome, RenderError, Renderer, Stats};
 
 fn fake(name: &'static str, fails_at: Option<u64>) -> Box<dyn Renderer> {
     Box::new(Fake { fails_at, ..Fake::new(name) })
 }
 
+/// Adds samples to a film. Returns the statistics, and who added how many of them.
+fn traced(together: &mut Together, range: Range<u64>, film: &mut Film) -> (Stats, Vec<(BackendInfo, u64)>) {
+    let outcome = together.advance(&job(2), range, film, &Control::new(&AtomicBool::new(false)));
+    let Ok(Outcome::Added { stats, credits }) = outcome else { panic!("{outcome:?}") };
+    (stats, credits)
+}
+
 /// The film of 64 samples and who added how many of them.
 fn rendered(together: &mut Together) -> (Film, Vec<(&'static str, u64)>) {
     let mut film = job(2).new_film();
-    together.accumulate(&job(2), 0..64, &mut film, &AtomicBool::new(false)).unwrap();
-    (film, together.credits(64).into_iter().map(|(info, samples)| (info.name, samples)).collect())
+    let (_, credits) = traced(together, 0..64, &mut film);
+    (film, credits.into_iter().map(|(info, samples)| (info.name, samples)).collect())
 }
 
 #[test]
@@ -26,10 +34,10 @@ fn members_add_up_what_they_have_traced() {
     let mut film = job(2).new_film();
     for range in [0..30, 30..30, 30..64] {
         let samples = range.end - range.start;
-        let stats = together.accumulate(&job(2), range, &mut film, &AtomicBool::new(false)).unwrap();
+        let (stats, credits) = traced(&mut together, range, &mut film);
         // Four paths and eight rays for each sample, whoever traced it.
         assert_eq!((stats.paths, stats.rays), (4 * samples, 8 * samples));
-        assert_eq!(together.credits(0).iter().map(|(_, added)| added).sum::<u64>(), samples);
+        assert_eq!(credits.iter().map(|(_, added)| added).sum::<u64>(), samples);
     }
     assert!(film == expected(64));
     let again = together.accumulate(&job(2), 60..66, &mut film, &AtomicBool::new(false));

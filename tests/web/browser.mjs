@@ -202,17 +202,17 @@ for (const [name, width, colorScheme] of [["narrow-dark", 400, "dark"], ["middle
   await button(second, "Wipe").click();
 }
 
-// With few turns in a dispatch, paths are put aside and taken up.
+// With few iterations in a dispatch, paths are suspended and resumed.
 page = await opened(remember, () => {
   const { parse } = JSON;
   JSON.parse = (text) => {
     const given = parse(text);
-    if (given.constants) given.constants.turn_limit = 8 * 60;
+    if (given.constants) given.constants.iteration_limit = 8 * 60;
     return given;
   };
 });
 await live(glass);
-await keepFilm(glass, "aside");
+await keepFilm(glass, "suspended");
 
 page = await opened(() => Object.defineProperty(Navigator.prototype, "gpu", { get: () => undefined }));
 seen.without = await page.locator(".live-notice").innerText();

@@ -88,7 +88,7 @@ fn every_menu_lists_its_commands() {
 }
 
 #[test]
-fn changes_are_taken_back_and_made_again_one_by_one() {
+fn changes_are_undone_and_redone_one_by_one() {
     let mut harness = open(SMALL);
     let angle = |harness: &Harness<'_, Window>| harness.state().shown_document().camera.vfov_degrees;
     let angles = [angle(&harness), 33.0, 44.0, 55.0];
@@ -99,13 +99,13 @@ fn changes_are_taken_back_and_made_again_one_by_one() {
     }
     for degrees in angles.iter().rev().skip(1) {
         send(&mut harness, Command::Undo);
-        assert_eq!(angle(&harness), *degrees, "taken back");
+        assert_eq!(angle(&harness), *degrees, "undone");
     }
     assert!(harness.state().disabled_reason(Command::Undo).is_some());
     for degrees in &angles[1..] {
         harness.run_steps(90);
         send(&mut harness, Command::Redo);
-        assert_eq!(angle(&harness), *degrees, "made again");
+        assert_eq!(angle(&harness), *degrees, "redone");
     }
     assert!(harness.state().disabled_reason(Command::Redo).is_some());
 }

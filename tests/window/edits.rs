@@ -77,7 +77,7 @@ fn a_changed_stage_is_reset_to_its_bits() {
     for value in [0.5, fuzz] {
         control(&harness, "Fuzz").set_value_accesskit(value);
         harness.run_steps(3);
-        // A value that is typed back is no change.
+        // A value that is typed back is not a change.
         assert_eq!(harness.state().shown_document().has_changed_scene(), value != fuzz);
     }
     control(&harness, "Fuzz").set_value_accesskit(0.5);

@@ -11,7 +11,7 @@ fn make_small(harness: &mut egui_kittest::Harness<'_, weekender::app::Window>) {
 }
 
 #[test]
-fn every_extreme_scene_is_shown_with_what_to_watch_and_wiped_against_the_book() {
+fn extreme_scenes_say_what_to_watch_and_wipe_against_the_book() {
     let mut harness = open("--stage sky --size 30x20");
     for case in shown_cases() {
         send(&mut harness, Command::Extreme(case));

@@ -22,7 +22,7 @@ fn film_of(flags: &str, message: Option<&str>) -> Film {
 }
 
 #[test]
-fn a_panic_of_the_tracer_is_reported_and_another_backend_finishes_the_picture() {
+fn another_backend_finishes_after_a_panic() {
     let whole = film_of("", None);
     for tiles in [0, 9] {
         let film = film_of(&format!("--simulate-panic {tiles}"), Some("panicked"));

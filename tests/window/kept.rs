@@ -173,7 +173,7 @@ fn title(harness: &Harness<'_, Window>, place: usize) -> String {
 }
 
 #[test]
-fn a_picture_of_another_size_is_not_subtracted_before_it_is_rendered_at_that_size() {
+fn pictures_of_other_sizes_are_not_subtracted() {
     let mut harness = finished(2);
     keep(&mut harness);
     harness.state_mut().document_mut().set_size([64, 36]);

@@ -83,7 +83,7 @@ fn a_drag_turns_about_what_was_under_the_pointer() {
 }
 
 #[test]
-fn the_wheel_goes_to_what_is_under_the_pointer_and_never_through() {
+fn the_wheel_stops_before_the_surface_under_the_pointer() {
     let mut harness = opened("view-distant");
     let (at, before) = (aside(&harness), camera(&harness));
     let point = under(&harness, at).expect("a sphere");

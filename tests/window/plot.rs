@@ -6,7 +6,7 @@ use eframe::egui::OutputCommand;
 use weekender::app::Command;
 
 #[test]
-fn a_render_ends_at_the_goal_goes_on_to_a_lower_one_and_its_errors_are_copied() {
+fn renders_end_at_the_goal_and_continue_to_a_lower_one() {
     let mut harness = open("--scene three-spheres --size 64x36 --device cpu --noise-target 0.01");
     send(&mut harness, Command::ErrorDock);
     until(&mut harness, "the end", |window| window.status().phase.is_over());

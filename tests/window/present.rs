@@ -21,7 +21,7 @@ fn present(arguments: &str, size: [f32; 2]) -> Harness<'static, Window> {
 }
 
 #[test]
-fn a_presentation_fits_renders_at_its_size_and_escape_ends_it_at_once() {
+fn presentations_render_at_screen_size_and_end_with_escape() {
     let mut harness = open_sized("--stage glass-schlick --device cpu", [1280.0, 720.0]);
     until(&mut harness, "a picture", has_samples(1));
     let small = harness.state().shown_document().size();

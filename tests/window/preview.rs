@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 /// Large enough for previews to be coarser.
 #[test]
-fn a_large_picture_is_coarse_while_it_moves_and_gets_finer_afterwards() {
+fn large_pictures_are_coarse_in_motion_and_refine_afterwards() {
     let mut harness = open("--stage metal --size 2560x1440 --device cpu --samples 2");
     until(&mut harness, "a picture", has_samples(1));
     let at = harness.state().picture_rect().center();

@@ -59,7 +59,7 @@ fn the_picture_fills_the_viewport_at_its_own_resolution() {
         settle(&mut harness);
         until(&mut harness, "the end", has_samples(2));
         fills_the_viewport(&harness, scale);
-        assert!(harness.state().disabled_reason(Command::Undo).is_some(), "nobody changed anything");
+        assert!(harness.state().disabled_reason(Command::Undo).is_some(), "nothing was changed");
     }
 }
 

@@ -63,7 +63,7 @@ fn the_traced_picture_is_right_of_the_divider() {
 
 /// The sky is the same in both stages, so their difference is nothing there.
 #[test]
-fn the_difference_from_another_stage_is_shown_when_that_is_traced() {
+fn differences_from_another_stage_appear_once_it_is_traced() {
     let mut harness = open("--stage glass-schlick --size 32x18 --samples 16 --device cpu");
     until(&mut harness, "the end", |window| has_samples(16)(window) && window.status().phase.is_over());
     let sky = harness.state().shown_pixel([0, 0]).unwrap();

@@ -1,4 +1,4 @@
-//! What the window can do: the table of all commands, the snapshot of the window that decides which are available, and
+//! Commands of the window: the table of all commands, the snapshot of the window that decides which are available, and
 //! the requests of panels. A command is data; only the window knows how to carry it out.
 
 mod requests;

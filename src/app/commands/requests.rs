@@ -1,4 +1,4 @@
-//! What panels ask for while they are drawn.
+//! Requests of panels, collected while they are drawn.
 
 use super::snapshot::Snapshot;
 use super::table::Command;
@@ -13,7 +13,7 @@ pub struct Requests {
     pub edits: Vec<Edit>,
 }
 
-/// What a panel is drawn with: the snapshot to show, and a place for its requests.
+/// Everything that a panel needs: the snapshot to show, and a place for its requests.
 pub struct PanelContext {
     pub snapshot: Snapshot,
     pub requests: RefCell<Requests>,

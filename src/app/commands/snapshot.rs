@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 /// A snapshot of the window at the start of the frame.
 pub struct Snapshot {
-    /// What the user has chosen.
+    /// The user's choices.
     pub model: Model,
     /// The status of the render.
     pub status: Arc<Status>,
     /// Seconds of tracing that the film's samples took before this run, if known.
     pub seconds_before: Option<f64>,
-    /// What Undo and Redo would change, if anything.
+    /// What Undo and Redo would change.
     pub undo: Option<&'static str>,
     pub redo: Option<&'static str>,
     /// The render is a preview, and the camera or a sphere is being moved.
@@ -20,11 +20,11 @@ pub struct Snapshot {
     /// There is a picture of the document, at any size.
     pub has_picture: bool,
     pub is_moving: bool,
-    /// The render began during the pause that lasts, and stops early.
+    /// The render began during the current pause, and stops early.
     pub is_held: bool,
-    /// Nothing but sky and ground is in sight, unlike from the camera of the stage.
+    /// Only sky and ground are in sight, unlike from the stage's camera.
     pub is_lost: bool,
-    /// What was checked, in words.
+    /// A description of the checked picture.
     pub checked: Option<String>,
     /// Whether the pointer has been over the picture.
     pub has_pixel: bool,
@@ -32,7 +32,7 @@ pub struct Snapshot {
     pub has_paths: bool,
     /// Whether the stage's sight is shown.
     pub has_sight: bool,
-    /// Why the document cannot be rendered, if so.
+    /// Why the document cannot be rendered; `None` if it can.
     pub invalid: Option<String>,
 }
 
@@ -42,7 +42,7 @@ impl Snapshot {
         &self.model.document
     }
 
-    /// How a render that has ended can go on.
+    /// How a finished render can continue.
     pub fn further(&self) -> Option<Stop> {
         self.document().further(&self.status).filter(|_| !self.model.is_paused)
     }
@@ -52,7 +52,7 @@ impl Snapshot {
         self.status.phase.is_working()
     }
 
-    /// Why the document's camera has no effect, if so.
+    /// Why the document's camera has no effect; `None` if it has one.
     pub fn no_rays(&self) -> Option<&'static str> {
         self.document().no_rays()
     }

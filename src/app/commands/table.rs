@@ -1,4 +1,4 @@
-//! Everything that a menu entry, a key, a button or the palette can do: one table, one row a command.
+//! All commands of menus, keys, buttons and the palette: one table, with one row per command.
 
 use super::snapshot::Snapshot;
 use crate::app::model::{Channel, Device, Dock, Mode, Model, Show, Tab, ViewState, With};
@@ -15,7 +15,7 @@ pub const MENUS: [&str; 6] = ["File", "Edit", "View", "Render", "Stage", "Help"]
 type Off = Box<dyn Fn(&Snapshot) -> Option<String> + Send + Sync>;
 type On = Box<dyn Fn(&Snapshot) -> bool + Send + Sync>;
 
-/// All about a command.
+/// A command's metadata.
 pub struct Row {
     pub command: Command,
     pub name: &'static str,
@@ -29,9 +29,9 @@ pub struct Row {
     pub is_listed: bool,
     /// Other words by which the palette finds it.
     pub synonyms: &'static str,
-    /// Why it cannot be used now, if so.
+    /// Why it is unavailable; `None` if it is available.
     off: Off,
-    /// Whether what it switches is on; none if it is no switch.
+    /// Whether its switch is on; `None` if it is not a switch.
     on: Option<On>,
 }
 
@@ -70,7 +70,7 @@ impl Row {
         self
     }
 
-    /// For keys and buttons alone.
+    /// Only for keys and buttons.
     fn unlisted(mut self) -> Self {
         self.is_listed = false;
         self
@@ -81,7 +81,7 @@ impl Row {
         self
     }
 
-    /// Off unless `is_possible`, for this reason.
+    /// Unavailable unless `is_possible`, for this reason.
     fn needs(
         self,
         is_possible: impl Fn(&Snapshot) -> bool + Send + Sync + 'static,
@@ -104,18 +104,18 @@ const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 const DIGITS: [Key; 9] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
 
-/// All commands but places, menu by menu in the order of the menus.
+/// All commands except places, menu by menu in the order of the menus.
 pub static ROWS: LazyLock<Vec<Row>> =
     LazyLock::new(|| plain_rows().into_iter().chain(family_rows()).collect());
 
-/// Makes the commands and their rows. A row has the command, its name, one sentence about it, what it does, and more.
+/// Makes the commands and their rows: the command, its name, one sentence about it, and optional methods.
 macro_rules! table {
     (
         families { $($(#[$about:meta])* $family:ident($value:ty),)* }
         $([$menu:expr] $($command:ident $name:expr, $help:expr
             $(, $method:ident($($argument:expr),*))*;)*)*
     ) => {
-        /// A thing that can be done. Its row in [`ROWS`] says all about it; places, such as stages and files, have none.
+        /// A command. Its metadata is in [`ROWS`]; places, such as stages and files, have no row.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum Command {
             $($(#[$about])* $family($value),)*
@@ -150,12 +150,12 @@ table! {
     }
 
     [Some("File")]
-    Open "Open…", "Opens a scene, a picture or a film, and goes on with it", keys(CTRL, Key::O),
+    Open "Open…", "Opens a scene, a picture or a film, and resumes it", keys(CTRL, Key::O),
         also("load import resume");
     CheckPicture "Check my picture…", "Finds the mistake in a picture that your own program has rendered",
         also("wrong mistake homework verify compare");
     Save "Save…", "Saves the picture, the film or the scene", keys(CTRL, Key::S), line(),
-        needs(is_live, KEPT_IS_SHOWN), also("export png ppm exr toml download film scene");
+        needs(is_live, KEPT_IS_SHOWN), also("save as export png ppm exr toml download film scene");
     ShowInFolder "Show in folder", "Opens the folder of the file that was saved or opened last",
         needs(|f| !f.model.remembered.recent.is_empty(), "Nothing has been saved or opened yet"),
         also("directory explorer finder");
@@ -168,9 +168,9 @@ table! {
         also("close exit");
 
     [Some("Edit")]
-    Undo "Undo", "Takes back the last change", keys(CTRL, Key::Z),
+    Undo "Undo", "Undoes the last change", keys(CTRL, Key::Z),
         needs(|f| f.undo.is_some(), "Nothing has been changed yet"), also("back lost");
-    Redo "Redo", "Makes that change again", keys(CTRL_SHIFT, Key::Z),
+    Redo "Redo", "Redoes that change", keys(CTRL_SHIFT, Key::Z),
         needs(|f| f.redo.is_some(), "Nothing has been undone");
     ResetAll "Reset everything", "Returns to the stage as it is in the book; Undo brings your changes back",
         needs(|f| f.document().is_changed(), "This is the stage as it is in the book"),
@@ -181,7 +181,7 @@ table! {
         needs(has_selection, NO_SPHERE), also("copy ball");
     DeleteSphere "Delete the sphere", "Removes the selected sphere", key(Key::Delete),
         needs(has_selection, NO_SPHERE), also("remove ball");
-    SkyColours "Sky colours…", "Changes the two colours that the sky fades between",
+    SkyColours "Sky colours", "Changes the two colours that the sky fades between",
         off(|f| f.no_rays().map(str::to_owned)), also("background light gradient");
     Home "Reset the camera", "Returns to the camera and lens of the stage", key(Key::Home), line(),
         needs(|f| f.document().camera != f.document().origin.recipe.camera, "This is the camera of the stage"),
@@ -213,17 +213,14 @@ table! {
         off(|f| f.no_rays().map(str::to_owned)), also("view position");
 
     [Some("Render")]
-    Pause "Pause or go on", "Stops and continues; when done, goes on to half the error. No sample is lost",
-        key(Key::Space),
-        needs(
-            |f| f.is_working() || f.model.is_paused || f.further().is_some(),
-            "More samples would change nothing"
-        ),
+    Pause "Pause or resume", "Pauses or resumes; when done, continues to half the error. No sample is lost",
+        key(Key::Space), needs(|f| f.is_working() || f.model.is_paused || f.further().is_some(),
+            "More samples would change nothing"),
         on(|f| f.model.is_paused), also("stop resume continue");
-    Restart "Start again", "Throws the samples away and begins anew", key(Key::R);
-    SwitchDevice "Switch CPU and GPU", "The same picture goes on with the other device", key(Key::G), line(),
+    Restart "Start again", "Discards the samples and starts over", key(Key::R);
+    SwitchDevice "Switch CPU and GPU", "Continues the same picture on the other device", key(Key::G), line(),
         off(|_| Device::Gpu.unavailable());
-    Reference "Reference (f64)", "Traces with twice the digits, slowly, to show rounding errors",
+    Reference "Reference (f64)", "Traces in double precision (slow), to show rounding errors",
         on(|f| f.model.remembered.device == Device::Reference), also("double precision");
     Keep "Keep this picture", "Keeps a copy with all its samples, to compare with", key(Key::M), line(),
         needs(is_live, KEPT_IS_SHOWN), also("slot snapshot compare");
@@ -236,8 +233,7 @@ table! {
     NextStage "Next stage", "One step forward in the book", key(Key::PageDown),
         needs(|f| f.model.neighbour(true).is_some(), "This is the last stage");
     ShowMe "Show me", "Sets zoom, view or wipe so that you see what to look for; again returns", key(Key::H),
-        line(),
-        off(|f| match f.document().stage() {
+        line(), off(|f| match f.document().stage() {
             Some(stage) => f.model.useless_show(Show::of_means(stage.sight.means)),
             None => Some("Only stages of the book name something to look for".to_owned()),
         }),
@@ -251,15 +247,12 @@ table! {
         on(|f| f.model.view.mode() == Some(Mode::Difference) && f.model.view.compared_kept().is_none()),
         also("slot snapshot compare subtract");
     BookArithmetic "The book’s arithmetic", "Wipes against the same picture with the book’s own formulas",
-        needs(
-            |f| f.document().origin.is_other_by_the_book(),
-            "This picture already has the book’s arithmetic, or traces no rays"
-        ),
+        needs(|f| f.document().origin.is_other_by_the_book(),
+            "This picture already has the book’s arithmetic, or traces no rays"),
         on(|f| f.model.view.mode().is_some() && f.model.view.with() == With::Book),
         also("rounding f64 precision");
-    ListPaths "Paths of a pixel", "Shows the paths of the pixel under the pointer, ray by ray", key(Key::T),
-        line(),
-        off(|f| match f.no_rays() {
+    ListPaths "Paths of this pixel", "Shows the paths of the pixel under the pointer, ray by ray", key(Key::T),
+        line(), off(|f| match f.no_rays() {
             Some(reason) => Some(reason.to_owned()),
             None if !is_live(f) => Some(KEPT_IS_SHOWN.to_owned()),
             None => (!f.has_pixel).then(|| "Point at the picture first".to_owned()),
@@ -316,11 +309,12 @@ table! {
     RenderAtSize "Render at this size",
         "Renders one pixel of the picture per pixel of the screen; the samples begin anew", unlisted();
     StopSaving "Stop", "Gives up this render", unlisted();
-    Recover "Go on with it", "Shows it, and adds more samples", unlisted();
-    WholeCompanion "Write the full one",
+    Recover "Resume", "Shows it, and adds more samples", unlisted();
+    DeleteLeft "Delete it", "Deletes what the last window has left", unlisted();
+    WholeCompanion "Render it in full quality",
         "Renders its pictures at full size and without noise, which takes some minutes", unlisted();
     StopCompanion "Stop", "Leaves out the pictures that are missing", unlisted();
-    GoOnFromKept "Go on from it", "Makes it the picture that is traced, and adds more samples",
+    GoOnFromKept "Continue from it", "Makes it the picture that is traced, and adds more samples",
         needs(has_kept, NOTHING_KEPT), unlisted();
     DeleteKept "Delete", "Deletes the kept picture", needs(has_kept, NOTHING_KEPT), unlisted();
     NextRay "Next ray", "", key(Key::ArrowRight), needs(|f| f.has_paths, NO_PATHS), unlisted();
@@ -406,12 +400,12 @@ fn no_presentation(snapshot: &Snapshot) -> Option<String> {
 }
 
 impl Command {
-    /// Its row in the table; none for a place.
+    /// Its row in the table; `None` for a place.
     pub fn row(self) -> Option<&'static Row> {
         ROWS.iter().find(|row| row.command == self)
     }
 
-    /// Without what only the window knows, such as the name of a bookmark: see [`Snapshot::name`].
+    /// Its general name. [`Snapshot::name`] knows more, such as the name of a bookmark.
     pub fn name(self) -> String {
         match self {
             Command::Stage(stage) => format!("{} {}", stage.section, stage.title),
@@ -484,12 +478,12 @@ impl Snapshot {
         named.unwrap_or_else(|| command.name())
     }
 
-    /// Why a command cannot be used now, if so.
+    /// Why a command is unavailable; `None` if it is available.
     pub fn disabled_reason(&self, command: Command) -> Option<String> {
         command.row().and_then(|row| (row.off)(self))
     }
 
-    /// Whether what a command switches is on; none if it is no switch.
+    /// Whether a command's switch is on; `None` if it is not a switch.
     pub fn switch(&self, command: Command) -> Option<bool> {
         match command {
             Command::Stage(stage) => Some(self.document().stage() == Some(stage)),
@@ -498,7 +492,7 @@ impl Snapshot {
         }
     }
 
-    /// Whether what a command switches is on.
+    /// Whether a command's switch is on.
     pub fn is_on(&self, command: Command) -> bool {
         self.switch(command).unwrap_or(false)
     }

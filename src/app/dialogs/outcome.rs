@@ -1,9 +1,9 @@
-//! How a dialog ends, and what it was about.
+//! Outcomes of dialogs.
 
 use crate::job::output::OutputFormat;
 use std::path::PathBuf;
 
-/// What happens to a dialog after a frame.
+/// The outcome of a dialog after a frame.
 pub enum Outcome {
     Stay,
     Close,
@@ -13,9 +13,13 @@ pub enum Outcome {
     Save(What, [u32; 2], PathBuf),
     /// It closes: the picture gets this size.
     Size([u32; 2]),
+    /// It closes, and so does the window, at once or when everything is saved.
+    Leave {
+        saves: bool,
+    },
 }
 
-/// What is saved.
+/// The content to save.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum What {
     Picture(OutputFormat),
@@ -28,7 +32,7 @@ impl What {
         (What::Picture(OutputFormat::Png), "PNG picture", "To look at; remembers how it was made", "png"),
         (What::Picture(OutputFormat::P6), "PPM picture (P6)", "The format of the book", "ppm"),
         (What::Picture(OutputFormat::Pfm), "PFM picture", "Linear numbers for other programs", "pfm"),
-        (What::Picture(OutputFormat::Exr), "Film (EXR)", "All light and samples; can go on later", "exr"),
+        (What::Picture(OutputFormat::Exr), "Film (EXR)", "All light and samples; can be resumed", "exr"),
         (What::Scene, "Scene (TOML)", "Text to edit; no picture in it", "toml"),
     ];
 
@@ -37,7 +41,7 @@ impl What {
     }
 }
 
-/// What a file or a folder is chosen for.
+/// The purpose of choosing a file or folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     Open,

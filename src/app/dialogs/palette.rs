@@ -9,7 +9,7 @@ use crate::measure::stress::shown_cases;
 use crate::stages::Stage;
 use eframe::egui::{Response, RichText, Ui, vec2};
 
-/// What an empty box offers.
+/// Suggestions for an empty box.
 const USUAL: [Command; 5] =
     [Command::ShowMe, Command::Save, Command::Present, Command::Stages, Command::Help];
 
@@ -55,7 +55,7 @@ struct Found {
     is_place: bool,
 }
 
-/// What a text finds: commands, then places, the best first and what is off last.
+/// The matches of a text: commands, then places; best first, unavailable last.
 fn found(text: &str, snapshot: &Snapshot) -> Vec<Found> {
     let is_on = |command: &Command| snapshot.disabled_reason(*command).is_none();
     let name = |command| match command {
@@ -131,7 +131,7 @@ fn row(ui: &mut Ui, snapshot: &Snapshot, command: Command, name: &str, is_chosen
     response
 }
 
-/// What a command does, or why it is disabled. It has two lines, so that nothing moves.
+/// The help of a command, or why it is disabled. It has two lines, so that nothing moves.
 fn about(ui: &mut Ui, snapshot: &Snapshot, command: Option<Command>) {
     let text = command.map_or_else(String::new, |command| {
         snapshot.disabled_reason(command).unwrap_or_else(|| command.help().to_owned())
@@ -149,7 +149,7 @@ mod tests {
     use crate::app::tests::snapshot_of;
 
     #[test]
-    fn what_is_meant_comes_first() {
+    fn the_best_match_comes_first() {
         let snapshot = snapshot_of("--stage glass-schlick --size 32x18");
         let first = |text: &str| found(text, &snapshot).first().map(|found| found.command);
         for (text, expected) in [

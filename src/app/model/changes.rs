@@ -33,6 +33,21 @@ impl Changes {
         Changes { done, undone, last: document, moved: None, has_moved: false, is_in_gesture: false }
     }
 
+    /// A history of these documents, oldest first; `shown` is the last one.
+    pub fn of_steps(steps: &[Document], shown: Document) -> Self {
+        let mut changes = Changes::new(steps.first().unwrap_or(&shown).clone());
+        steps.iter().for_each(|step| end_step(&mut changes.done, step));
+        Changes { last: shown, ..changes }
+    }
+
+    /// The document, and at most `count` states before it, oldest first.
+    pub fn last_steps(&self, document: &Document, count: usize) -> Vec<Document> {
+        let mut done = self.done.clone();
+        end_step(&mut done, document);
+        done.drain(..done.len().saturating_sub(count + 1));
+        done.into()
+    }
+
     /// What undo and redo would change, in words.
     pub fn labels(&self, document: &Document) -> [Option<&'static str>; 2] {
         [self.earlier(document), self.later(document)].map(|other| Some(document.difference(other?)))
@@ -123,7 +138,7 @@ mod tests {
     use eframe::egui::{Event, Modifiers, PointerButton, Pos2, RawInput};
 
     #[test]
-    fn a_move_with_long_frames_is_one_step() {
+    fn a_move_with_long_frames_is_one_undo_step() {
         let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
         let mut changes = Changes::new(document.clone());
         let first = document.camera;
@@ -139,11 +154,11 @@ mod tests {
     }
 
     #[test]
-    fn a_change_that_needs_no_other_film_can_be_taken_back_too() {
+    fn changes_that_keep_the_film_can_be_undone() {
         let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
         let mut changes = Changes::new(document.clone());
         document.stop.seconds = Some(7.0);
-        assert!(!changes.follow(&context, &document), "the same film goes on");
+        assert!(!changes.follow(&context, &document), "the film stays the same");
         assert!(changes.earlier(&document).is_some());
         changes.undo(&mut document);
         assert_eq!(document.stop.seconds, None);
@@ -158,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_changed_while_the_button_is_held_is_one_step() {
+    fn a_drag_is_one_undo_step() {
         let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
         let mut changes = Changes::new(document.clone());
         press(&context, true);
@@ -166,7 +181,7 @@ mod tests {
         for seconds in [7.0, 8.0] {
             document.stop.seconds = Some(seconds);
             assert!(!changes.follow(&context, &document));
-            assert!(changes.moved.is_none(), "the film goes on, so nothing is previewed");
+            assert!(changes.moved.is_none(), "the film stays the same, so nothing is previewed");
         }
         press(&context, false);
         changes.follow(&context, &document);

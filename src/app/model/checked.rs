@@ -49,7 +49,7 @@ impl CheckedScene {
         })
     }
 
-    /// The scene file that contains the scene, if it was saved and nobody has changed the file since.
+    /// The scene file that contains the scene, if it was saved and the file is unchanged since.
     pub fn file(&self) -> Option<PathBuf> {
         let (path, stamp) = self.file.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
         (stamp_of(&path) == stamp).then_some(path)
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn a_job_has_the_scene_with_its_rules_and_the_camera_and_settings_asked_for() {
+    fn jobs_have_the_requested_camera_and_settings() {
         let stage = Stage::find("lambertian-linear").unwrap().recipe();
         let checked = CheckedScene::new(Arc::clone(&stage.scene), stage.rules);
         let camera = Camera { vfov_degrees: 33.0, ..stage.camera };

@@ -83,7 +83,7 @@ impl Device {
     pub fn help(self) -> &'static str {
         match (self, adapter()) {
             (Device::Gpu, Ok(adapter)) if adapter.is_software => {
-                "Trace with a program on the processor, since there is no graphics card; slower than CPU"
+                "No graphics card: \"GPU\" runs on the processor and is slower"
             }
             _ => self.words()[2],
         }

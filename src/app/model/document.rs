@@ -9,7 +9,7 @@ use crate::scene::{Camera, Pick, Scene};
 use crate::stages::{Rules, Shading, Stage};
 use std::sync::Arc;
 
-/// What the names of files of changed scenes end in.
+/// Suffix of the file names of changed scenes.
 const CHANGED: &str = "-changed";
 
 const NO_RAYS: &str = "This stage traces no rays: its picture depends only on the position of each pixel";
@@ -35,7 +35,7 @@ pub struct Document {
 
 impl PartialEq for Document {
     /// Origins and scenes are immutable, so comparing their addresses is enough. A size that follows the viewport or
-    /// the book is none of the user's changes.
+    /// the book is not a change of the user.
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.origin, &other.origin)
             && Arc::ptr_eq(&self.checked, &other.checked)
@@ -90,18 +90,19 @@ impl Document {
         (is_own && !self.is_from_file).then_some(self.stop)
     }
 
-    /// What differs from `other`, to name a change.
+    /// A name for the change from `other`.
     pub fn difference(&self, other: &Document) -> &'static str {
         let (mine, theirs) = (&self.camera, &other.camera);
         let [settings, of_other] =
             [&self.settings, &other.settings].map(|of| RenderSettings { width: 0, height: 0, ..*of });
         if !Arc::ptr_eq(&self.origin, &other.origin) {
-            "another picture"
+            "change of picture"
         } else if !Arc::ptr_eq(&self.checked, &other.checked) {
             match self.scene().spheres.len().cmp(&other.scene().spheres.len()) {
                 std::cmp::Ordering::Equal if self.scene().sky != other.scene().sky => "sky",
                 std::cmp::Ordering::Equal => "sphere",
-                _ => "number of spheres",
+                std::cmp::Ordering::Greater => "added sphere",
+                std::cmp::Ordering::Less => "deleted sphere",
             }
         } else if mine.vfov_degrees != theirs.vfov_degrees {
             "field of view"
@@ -146,7 +147,7 @@ impl Document {
         &self.origin.recipe.rules
     }
 
-    /// Why there are no rays, if so: the camera then has no effect, and no pixel has paths.
+    /// Why there are no rays; the camera then has no effect, and no pixel has paths.
     pub fn no_rays(&self) -> Option<&'static str> {
         (self.rules().shading == Shading::ImageGradient).then_some(NO_RAYS)
     }
@@ -254,7 +255,8 @@ impl Document {
         }
         let stop = self.stop;
         match reason {
-            EndReason::NoiseTarget => {
+            // A denoised picture ends with fewer samples than its goal for the raw one needs.
+            EndReason::NoiseTarget | EndReason::Samples if stop.noise.is_some() && stop.samples.is_none() => {
                 let reached = status.error.map_or(f64::INFINITY, |error| error.rmse).min(stop.noise?);
                 let halves = std::iter::successors(stop.noise, |noise| Some(noise / 2.0));
                 let next = halves.take_while(|noise| *noise > 1e-6).find(|noise| *noise < 0.55 * reached);
@@ -268,7 +270,7 @@ impl Document {
                 let seconds = 2.0 * stop.seconds?.max(status.elapsed.as_secs_f64().floor());
                 Some(Stop { seconds: Some(seconds), ..stop })
             }
-            EndReason::Stopped => None,
+            EndReason::NoiseTarget | EndReason::Stopped => None,
         }
     }
 
@@ -369,7 +371,7 @@ mod tests {
     }
 
     #[test]
-    fn a_change_of_the_samples_is_another_film_and_one_of_the_user_another_document() {
+    fn changed_samples_need_another_film() {
         let usual = metal();
         type Change = fn(&mut Document);
         // A change, whether the film is still the same, and whether the document is.
@@ -438,7 +440,7 @@ mod tests {
         let after = |samples_per_pixel| Status { samples_per_pixel, ..done(EndReason::Samples, 0.01) };
         let unknown = Status { error: None, ..done(EndReason::NoiseTarget, 0.0) };
         for (stop, status, expected) in [
-            // The last pass went on after the end, or a stop was chosen that lies further ahead.
+            // The last pass ended after the limit, or a later stop was chosen.
             (samples(60), after(100), Some(samples(200))),
             (samples(300), after(100), Some(samples(600))),
             (samples(SAMPLE_LIMIT - 1), after(SAMPLE_LIMIT - 1), Some(samples(SAMPLE_LIMIT))),
@@ -447,7 +449,7 @@ mod tests {
             (noise(0.002), done(EndReason::NoiseTarget, 0.01), Some(noise(0.001))),
             (noise(0.002), done(EndReason::NoiseTarget, 1e-6), None),
             (samples(100), done(EndReason::Stopped, 0.01), None),
-            // There is no such end by now.
+            // That end no longer exists.
             (Stop::default(), after(100), None),
             (Stop::default(), done(EndReason::NoiseTarget, 0.01), None),
             (Stop::default(), done(EndReason::TimeLimit, 0.01), None),

@@ -27,7 +27,7 @@ fn small_copy(context: &Context, film: &Film, document: &Document) -> TextureHan
 pub struct Kept {
     /// A number that no other kept picture has.
     pub number: u64,
-    /// What it shows.
+    /// The document that it shows.
     pub document: Document,
     /// Its exact sums.
     pub film: Arc<Film>,
@@ -89,8 +89,16 @@ impl KeptList {
 
     /// As a kept picture is called in sentences.
     pub fn title(&self, kept: &Kept) -> String {
-        let place = self.pictures.iter().position(|other| other.number == kept.number).unwrap_or_default();
-        format!("{}: {}", place + 1, kept.document.title())
+        format!("{}: {}", self.place(kept) + 1, kept.document.title())
+    }
+
+    /// As a kept picture is called where there is little room.
+    pub fn short_title(&self, kept: &Kept) -> String {
+        format!("kept {}", self.place(kept) + 1)
+    }
+
+    fn place(&self, kept: &Kept) -> usize {
+        self.pictures.iter().position(|other| other.number == kept.number).unwrap_or_default()
     }
 
     /// The place of the picture that commands mean.
@@ -125,7 +133,7 @@ impl KeptList {
         self.chosen = self.chosen.and_then(after).or_else(|| self.pictures.len().checked_sub(1));
     }
 
-    /// What all of them take in memory.
+    /// Memory of all of them, bytes.
     pub fn bytes(&self) -> u64 {
         self.iter().map(|kept| kept.bytes()).sum()
     }

@@ -50,9 +50,9 @@ pub struct Remembered {
     pub has_controls: bool,
     /// Whether the right panel is shown.
     pub has_info: bool,
-    /// What the dock under the picture shows, if it is open.
+    /// The open tab of the dock under the picture.
     pub dock: Option<Dock>,
-    /// What the right panel shows.
+    /// The open tab of the right panel.
     pub tab: Tab,
     /// The size of pictures that have no size of their own.
     pub sizing: Sizing,
@@ -66,7 +66,7 @@ pub struct Remembered {
     pub bookmarks: Vec<Bookmark>,
     /// The files that were opened or saved last, newest first.
     pub recent: Vec<PathBuf>,
-    /// The card with the first steps was closed: it does not come back by itself.
+    /// The card with the first steps was closed: it does not reopen automatically.
     pub is_greeted: bool,
 }
 
@@ -112,6 +112,15 @@ impl Stored {
     pub fn write(remembered: Remembered, view: ViewState, storage: &mut dyn Storage) {
         eframe::set_value(storage, Stored::KEY, &Stored { version: Stored::VERSION, remembered, view });
     }
+
+    /// The next window does not begin in full screen, where one would look for its title bar in vain.
+    pub fn forget_full_screen(storage: &mut dyn Storage) {
+        /// eframe's own entry, in RON.
+        const WINDOW: &str = "window";
+        if let Some(window) = storage.get_string(WINDOW) {
+            storage.set_string(WINDOW, window.replace("fullscreen:true", "fullscreen:false"));
+        }
+    }
 }
 
 impl Remembered {
@@ -151,7 +160,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_cannot_be_is_not_remembered() {
+    fn impossible_settings_are_not_remembered() {
         let mut broken = Camera::BOOK;
         broken.look_at = broken.look_from;
         let strange = Remembered {

@@ -5,7 +5,7 @@ use crate::job::render::{RenderSettings, SIZE_LIMIT};
 use crate::stages::Shading;
 use serde::{Deserialize, Serialize};
 
-/// What decides the size of pictures that have no size of their own.
+/// How the size of a picture is chosen if it has none of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Sizing {
     /// As large as fits into the viewport, one pixel of the picture per pixel of the screen.
@@ -85,7 +85,7 @@ impl Document {
         RenderSettings { width, height, ..self.settings }
     }
 
-    /// Whether the documents differ in nothing but their size, if at all.
+    /// Whether the documents differ at most in their size.
     pub fn is_same_at_another_size(&self, other: &Document) -> bool {
         let mut resized = self.clone();
         resized.set_size(other.size());

@@ -4,6 +4,7 @@ use super::{Device, DeviceOptions, Document, Mode, Remembered, Show, Tab, ViewSt
 use crate::backends::BackendChoice;
 use crate::progressive::Stop;
 use crate::stages::{Shading, Stage};
+use std::sync::Arc;
 
 /// A presentation: full screen, the picture with large captions, no panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +38,9 @@ pub struct Model {
     pub is_full_screen: bool,
     /// Whether the card with the first steps is shown.
     pub has_first_steps: bool,
-    /// The presentation, if there is one.
+    /// Which of them were done: the camera moved, a sphere selected, another picture opened.
+    pub steps_done: [bool; 3],
+    /// The presentation in progress.
     pub presentation: Option<Presentation>,
 }
 
@@ -52,13 +55,20 @@ impl Model {
         self.has_panels() && self.remembered.has_info && self.remembered.tab == tab
     }
 
+    /// Notes which of the first steps were done since the document was as `before`.
+    pub fn note_steps(&mut self, before: &Document) {
+        let is_same = Arc::ptr_eq(&self.document.origin, &before.origin);
+        let done = [is_same && self.document.camera != before.camera, self.selected.is_some(), !is_same];
+        self.steps_done.iter_mut().zip(done).for_each(|(step, is_done)| *step |= is_done);
+    }
+
     /// The backend for the chosen device, lanes and threads.
     pub fn backend(&self) -> BackendChoice {
         let Remembered { device, lanes, threads, .. } = self.remembered;
         device.backend(&self.devices, lanes, threads)
     }
 
-    /// Why there is nothing to compare this picture with, if so.
+    /// Why this picture cannot be compared; `None` if it can.
     pub fn nothing_to_compare(&self) -> Option<String> {
         let document = &self.document;
         let has_other = match document.stage() {
@@ -68,7 +78,7 @@ impl Model {
         (!has_other).then(|| "There is nothing to compare this picture with".to_owned())
     }
 
-    /// Why the chosen kept picture cannot be subtracted from the picture, if so.
+    /// Why the difference from the kept picture is unavailable; `None` if it is available.
     pub fn not_subtractable(&self) -> Option<String> {
         let Some(kept) = self.view.kept.meant() else {
             return Some("No picture is kept; M keeps this one".to_owned());
@@ -77,7 +87,7 @@ impl Model {
         ([a, b] != [x, y]).then(|| format!("The kept picture is {a} × {b} and this one {x} × {y}"))
     }
 
-    /// Why exposure and channels would change nothing, if so.
+    /// Why exposure and channels have no effect; `None` if they have one.
     pub fn no_exposure(&self) -> Option<String> {
         let view = &self.view;
         let is_shown = view.show() == Show::Picture && view.mode() != Some(Mode::Difference);
@@ -93,7 +103,7 @@ impl Model {
         }
     }
 
-    /// Why a view has nothing to show now, if so.
+    /// Why a view has nothing to show; `None` if it has something.
     pub fn useless_show(&self, show: Show) -> Option<String> {
         let no = |reason: &str| Some(reason.to_owned());
         let (has_error, shading) = (self.document.settings.estimate_error, self.document.rules().shading);

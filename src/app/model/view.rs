@@ -1,9 +1,9 @@
-//! What the viewport shows: a view of the film, or a comparison with another picture.
+//! The view in the viewport: a view of the film, or a comparison with another picture.
 
 use super::{CheckedScene, Document, Kept, KeptList, Origin, Show, Tone};
 use crate::denoise::Denoised;
 use crate::job::recipe::Recipe;
-use crate::progressive::{ReferenceMeans, View};
+use crate::progressive::{ReferenceMeans, Stop, View};
 use crate::stages::Stage;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -29,7 +29,7 @@ pub enum With {
     Kept,
 }
 
-/// What is traced to compare the main picture with.
+/// The picture that is traced for comparison with the main picture.
 #[derive(Clone)]
 pub enum Other {
     /// Another stage.
@@ -201,7 +201,17 @@ impl ViewState {
         }
     }
 
-    /// What is traced to compare `document` with, if anything.
+    /// When the render of this run ends that should end at `stop`: as soon as the picture that is shown has the error of
+    /// its goal.
+    pub fn stop(&self, run: u64, stop: Stop) -> Stop {
+        let reached = self.denoised_of(run).zip(stop.noise);
+        match reached.filter(|(denoised, goal)| denoised.error.rmse() <= *goal) {
+            Some((denoised, _)) => Stop { samples: Some(denoised.film.sample_count()), ..stop },
+            None => stop,
+        }
+    }
+
+    /// The picture that is traced for comparison with `document`.
     pub fn compared(&self, document: &Document) -> Option<Other> {
         let origin = &document.origin;
         let by_the_book = || Other::ByTheBook(Arc::clone(origin), Arc::clone(&document.checked));

@@ -75,6 +75,8 @@ fn actions(ui: &mut Ui, cx: &PanelContext) {
 pub fn name_window(context: &egui::Context, document: &Document) {
     let changed = if document.is_changed() { ", changed" } else { "" };
     let title = format!("{}{changed} – Weekender", document.heading());
+    // For screen readers.
+    context.accesskit_node_builder(egui::accesskit_root_id(), |node| node.set_label(title.as_str()));
     let place = egui::Id::unique("title of the window");
     if context.data(|data| data.get_temp::<String>(place)).as_ref() != Some(&title) {
         context.data_mut(|data| data.insert_temp(place, title.clone()));
@@ -122,7 +124,7 @@ fn device(ui: &mut Ui, cx: &PanelContext) {
 
 fn pause(ui: &mut Ui, cx: &PanelContext) {
     let label = match cx.model.is_paused {
-        _ if cx.further().is_some() => "Go on",
+        _ if cx.further().is_some() => "Continue",
         true => "Resume",
         false => "Pause",
     };

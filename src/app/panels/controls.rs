@@ -19,7 +19,7 @@ use glam::DVec3;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-/// What a coordinate can be, scene units.
+/// Limits of a coordinate, scene units.
 const POSITIONS: RangeInclusive<f64> = -LENGTH_LIMIT..=LENGTH_LIMIT;
 
 /// The first chapter whose pictures need another up vector or a lens.
@@ -33,6 +33,7 @@ pub fn ui(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx:
         lens(ui, document);
         sphere(ui, document, cx);
         panel_line(ui);
+        sky(ui, document, cx);
     }
     ui.spacing_mut().item_spacing.y = 0.0;
     size_and_samples(ui, document, remembered, cx);
@@ -144,6 +145,22 @@ fn sphere(ui: &mut Ui, document: &mut Document, cx: &PanelContext) {
     }
 }
 
+/// The only lamp of the book.
+fn sky(ui: &mut Ui, document: &Document, cx: &PanelContext) {
+    let (mut sky, own) = (document.scene().sky, document.origin.recipe.scene.sky);
+    let reset = (sky != own).then_some("Reset sky");
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let is_reset = fold(ui, Header { title: "Sky", reset, ..Header::default() }, false, |ui| {
+        colour(ui, About::new("Overhead", "The light from straight above"), &mut sky.top);
+        let help = "The light from straight below, which fades upwards";
+        colour(ui, About::new("At the horizon", help), &mut sky.bottom);
+    });
+    let sky = if is_reset { own } else { sky };
+    if sky != document.scene().sky {
+        cx.edit(Edit::Sky(sky));
+    }
+}
+
 /// The values of the sphere after this frame.
 fn body(ui: &mut Ui, selected: &Selected, document: &Document) -> Body {
     let mut body = selected.body;
@@ -241,13 +258,27 @@ fn sizing(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx:
             }
         }
     });
-    let mut size = document.size();
+    let before = document.size();
+    let mut size = before;
     for (name, pixels) in ["Width", "Height"].into_iter().zip(&mut size) {
         whole(ui, About::new(name, "Pixels"), pixels, 1..=SIZE_LIMIT, 64.0);
     }
-    if size != document.size() {
-        document.give_size(size);
+    let place = ui.scope_id().with("keeps its shape");
+    let mut keeps = ui.data(|data| data.get_temp(place)).unwrap_or(true);
+    check(ui, About::new("Keep the shape", "Width and height change together"), &mut keeps);
+    ui.data_mut(|data| data.insert_temp(place, keeps));
+    if size != before {
+        document.give_size(if keeps { in_shape(before, size) } else { size });
     }
+}
+
+/// A size of the shape of `before`, one side of which was changed.
+fn in_shape(before: [u32; 2], size: [u32; 2]) -> [u32; 2] {
+    let axis = usize::from(size[0] == before[0]);
+    let factor = f64::from(size[axis]) / f64::from(before[axis]);
+    // The other side has limits, too.
+    let most = f64::from(SIZE_LIMIT) / f64::from(before[1 - axis]);
+    before.map(|side| ((f64::from(side) * factor.min(most)).round() as u32).max(1))
 }
 
 /// A row for a whole number.
@@ -256,7 +287,7 @@ fn whole(ui: &mut Ui, about: About<'_>, value: &mut u32, limits: RangeInclusive<
     row(ui, about, |ui| Number::new(about, limits).whole_field(ui, width, value));
 }
 
-/// What ends the render. A choice replaces what the command line has set.
+/// The stop condition. A choice replaces the one of the command line.
 fn stop(ui: &mut Ui, stop: &mut Stop, has_error: bool, usual: u64) {
     let no_error = (!has_error).then_some("Switch on \u{201c}Estimate the error\u{201d} under Tracer first");
     let choices = [
@@ -370,7 +401,7 @@ fn threads_and_lanes(ui: &mut Ui, remembered: &mut Remembered) {
     );
 }
 
-/// A list of counts, the first of which is automatic.
+/// A list of counts, with automatic first.
 fn count(ui: &mut Ui, about: About<'_>, chosen: &mut Option<usize>, counts: Vec<usize>) {
     let words =
         |count: Option<usize>| count.map_or_else(|| "automatic".to_owned(), |count| count.to_string());

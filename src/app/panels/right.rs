@@ -54,7 +54,7 @@ pub fn tabs(ui: &mut Ui, tabs: &[Tab], shown: Tab) -> Tab {
     chosen
 }
 
-/// What stays at the foot of the panel, at the same height for all stages.
+/// The foot of the panel, at the same height for all stages.
 pub fn foot(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let frame = theme::panel(Margin::symmetric(16, 4));
     Panel::bottom("foot").resizable(false).frame(frame).show(ui, |ui| {
@@ -63,7 +63,7 @@ pub fn foot(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// What scrolls above the foot.
+/// The scrolling part above the foot.
 pub fn scrolling(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     CentralPanel::default().frame(theme::panel(Margin::ZERO)).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {

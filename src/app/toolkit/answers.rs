@@ -84,7 +84,7 @@ pub struct Query<K, T> {
     pub answers: Answers<T>,
     /// The newest answer.
     pub answer: Option<T>,
-    /// Why the last question has no answer, if so.
+    /// Why the last question has no answer; `None` if it has one or is pending.
     pub fault: Option<String>,
 }
 
@@ -105,7 +105,7 @@ impl<K: PartialEq, T: Send + 'static> Query<K, T> {
         is_new
     }
 
-    /// The right to answer, unless `key` was asked last, or the question before is open.
+    /// A permit to answer; `None` if `key` was asked last or a question is pending.
     pub fn ask(&mut self, context: &Context, key: K) -> Option<Answer<T>> {
         if self.answers.is_open() || self.asked.as_ref() == Some(&key) {
             return None;
@@ -129,7 +129,7 @@ impl<T> Answer<T> {
     /// Gives the answer, or one of several.
     pub fn give(&self, value: Result<T, String>) {
         self.is_promised.set(false);
-        // If the window was closed, nobody receives it.
+        // If the window was closed, the answer is dropped.
         let _ = self.sender.send(value);
         self.context.request_repaint();
     }
@@ -151,7 +151,7 @@ impl<T> Drop for Answer<T> {
     fn drop(&mut self) {
         if self.is_promised.get() {
             let reason =
-                if thread::panicking() { "the program failed" } else { "nothing has done it; try again" };
+                if thread::panicking() { "the program failed" } else { "the task did not finish; try again" };
             self.give(Err(reason.to_owned()));
         }
         // The question is over before the window looks.
@@ -198,7 +198,7 @@ mod tests {
         answers.ask("test", &context, || panic!("on purpose"));
         assert_eq!(answers.wait(), Some(Err("the program failed (on purpose)".to_owned())));
         drop(answers.promise(&context));
-        assert_eq!(answers.take(), Some(Err("nothing has done it; try again".to_owned())));
+        assert_eq!(answers.take(), Some(Err("the task did not finish; try again".to_owned())));
         let own = answers.promise(&context);
         let fallen = caught::<()>(move || {
             let _own = own;

@@ -3,10 +3,10 @@
 use super::widgets::hint;
 use eframe::egui::{Align, Context, Event, Key, Modifiers, Response, ScrollArea, TextEdit, Ui, vec2};
 
-/// How many rows Page Up and Page Down go on.
+/// Rows per Page Up or Page Down.
 const PAGE: usize = 8;
 
-/// What was typed, and the chosen row.
+/// The typed text, and the chosen row.
 #[derive(Clone, Default)]
 pub struct Finder {
     text: String,

@@ -41,7 +41,7 @@ colours! {
     line 0x303338 0xD6D7D7
     /// Rings and handles; never letters.
     edge 0x6F7680 0x81868C
-    /// What is on or chosen.
+    /// Active or chosen elements.
     tint 0x27405C 0xCFE0F2
     /// Labels, hints, keys.
     weak 0xA0A6AF 0x585D64

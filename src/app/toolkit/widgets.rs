@@ -44,7 +44,7 @@ pub fn named(response: &Response, name: &str) {
     take_focus(response, name);
 }
 
-/// Focuses the widget if it is the one that [`focus`] wants. Returns whether it is.
+/// Focuses the widget if [`focus`] wants it. Returns whether it does.
 fn take_focus(response: &Response, name: &str) -> bool {
     let wanted: Option<String> = response.ctx.data(|data| data.get_temp(wanted()));
     let is_wanted = wanted.as_deref() == Some(name);
@@ -180,7 +180,7 @@ pub fn add_command(ui: &mut Ui, cx: &PanelContext, command: Command, control: im
     response
 }
 
-/// Buttons of commands, of which at most one is on, each at least `width` wide.
+/// Buttons of commands, at most one of them on, each at least `width` wide.
 pub fn command_switch(ui: &mut Ui, cx: &PanelContext, width: f32, named: &[(&str, Command)]) {
     let words = |(_, command): &(&str, Command)| {
         (with_keys(ui, command.help(), *command), cx.disabled_reason(*command))
@@ -205,11 +205,12 @@ pub fn with_keys(ui: &Ui, help: &str, command: Command) -> String {
 
 /// A button that is tinted while it is on.
 pub fn choice<'a>(ui: &Ui, is_on: bool, content: impl IntoAtoms<'a>) -> Button<'a> {
-    let stroke = if is_on { Stroke::new(1.0, theme::colours(ui).accent) } else { Stroke::NONE };
-    Button::new(content).selected(is_on).stroke(stroke)
+    // Both are equally large.
+    let colour = if is_on { theme::colours(ui).accent } else { Color32::TRANSPARENT };
+    Button::new(content).selected(is_on).stroke(Stroke::new(1.0, colour))
 }
 
-/// Buttons of which one is on, side by side, each at least `width` wide. Returns the one that was clicked.
+/// Buttons side by side, exactly one of them on, each at least `width` wide. Returns the one that was clicked.
 pub fn switch<T: PartialEq + Copy>(
     ui: &mut Ui,
     width: f32,
@@ -283,7 +284,7 @@ impl<'a> Number<'a> {
         Number { about, limits, suffix: "", speed: None, scale: 0.0, is_whole: false }
     }
 
-    /// What stands after the number.
+    /// The unit after the number.
     pub fn unit(self, suffix: &'a str) -> Self {
         Number { suffix, ..self }
     }
@@ -300,7 +301,7 @@ impl<'a> Number<'a> {
     /// The field alone. A number beyond a limit becomes the limit.
     pub fn field(&self, ui: &mut Ui, width: f32, value: &mut f64) -> Response {
         let (before, mut shown) = (*value, *value);
-        // What is shown of the number is the number, although it has fewer digits.
+        // The shown text stands for the exact number, although it has fewer digits.
         let parse = |text: &str| {
             let text: String = text.chars().filter(|c| !c.is_whitespace()).collect();
             let number = || text.replace('\u{2212}', "-").trim_end_matches(self.suffix.trim()).parse().ok();
@@ -457,7 +458,7 @@ fn with_minus(text: &str) -> String {
     text.replace('-', "\u{2212}")
 }
 
-/// A number with so many digits of `scale`.
+/// A number rounded to `digits` digits of `scale`.
 fn rounded(n: f64, scale: f64, digits: i32) -> f64 {
     let step = 10_f64.powi(scale.log10().floor().clamp(-300.0, 300.0) as i32 + 1 - digits);
     let rounded = (n / step).round() * step;

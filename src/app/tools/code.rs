@@ -7,10 +7,10 @@ use crate::app::toolkit::widgets::{About, hint, small, switch, tip};
 use crate::page::companion::{Excerpt, Highlighter, excerpts_between};
 use crate::stages::Stage;
 use eframe::egui::text::{LayoutJob, TextFormat};
-use eframe::egui::{FontSelection, Frame, Grid, Label, Margin, RichText, ScrollArea, Sides, TextStyle, Ui};
+use eframe::egui::{FontSelection, Frame, Grid, Label, Margin, RichText, Sides, TextStyle, Ui};
 use std::sync::LazyLock;
 
-/// What words of the code mean that are not in the book.
+/// Meanings of words in the code that are not in the book.
 const WORDS: [(&str, &str); 18] = [
     ("coin", "a random number from 0 to 1"),
     ("f0", "the share that is reflected head on: 4 % for glass"),
@@ -52,7 +52,7 @@ pub struct Code {
     /// The stage whose excerpts these are.
     stage: Option<&'static Stage>,
     excerpts: Vec<Coloured>,
-    /// The chosen language, if any.
+    /// The chosen language.
     language: Option<&'static str>,
 }
 
@@ -64,7 +64,7 @@ impl Code {
             self.stage = stage;
         }
         scrolling(ui, |ui| match stage {
-            None => _ = hint(ui, "This picture is no stage of the book, so there is no code to show."),
+            None => _ = hint(ui, "This picture is not a stage of the book, so there is no code to show."),
             Some(_) if self.excerpts.is_empty() => {
                 _ = hint(ui, "This stage needs no new code: only its scene and settings are new.");
             }
@@ -156,10 +156,7 @@ fn excerpt_ui(ui: &mut Ui, (excerpt, pieces): &Coloured) {
     let well = Frame::new().fill(colours.well).stroke(ui.visuals().window_stroke).corner_radius(4);
     well.inner_margin(Margin::same(8)).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        let id = (&excerpt.file, excerpt.first);
-        ScrollArea::horizontal().id_salt(id).show(ui, |ui| {
-            ui.add(Label::new(layout(ui, pieces)).extend());
-        });
+        ui.add(Label::new(layout(ui, pieces)).wrap());
     });
 }
 

@@ -85,7 +85,7 @@ fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, cx: &PanelContext) {
 const COMPARISONS: [(&str, Command); 3] =
     [("Look", Command::Flip), ("Wipe", Command::KeptWipe), ("Difference", Command::KeptDifference)];
 
-/// What the menu of a right click on it offers.
+/// Its context menu.
 const MENU: [Command; 6] = [
     Command::Flip,
     Command::KeptWipe,

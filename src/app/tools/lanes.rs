@@ -1,4 +1,4 @@
-//! What the lanes of a core do over time, with and without refill: a row per lane, a column per step. The paths are the
+//! The lanes of a core over time, with and without refill: a row per lane, a column per step. The paths are the
 //! tracer's.
 
 use crate::app::commands::Snapshot;
@@ -28,7 +28,7 @@ pub struct Lanes {
 }
 
 impl Lanes {
-    /// Records so many lanes in the middle of the picture; none if they are not shown.
+    /// Records `count` lanes in the middle of the picture; `None` if they are not shown.
     pub fn follow(
         &mut self,
         context: &egui::Context,

@@ -1,4 +1,4 @@
-//! What is shown of the picture and how bright, and the histogram.
+//! The view of the picture, its brightness, and the histogram.
 
 use crate::app::commands::{Command, PanelContext};
 use crate::app::model::{Channel, Show, Tone, ViewState};
@@ -36,11 +36,12 @@ impl ToneUi {
         subject.ask(context, &mut self.query, key, move |film| Some(Histogram::of(film, white)));
     }
 
-    /// Draws what is shown and how bright, and the histogram.
+    /// Draws the view, its brightness, and the histogram.
     pub fn ui(&mut self, ui: &mut Ui, view: &mut ViewState, cx: &PanelContext) {
         self.is_open = false;
         let (show, channel) = (view.show(), view.tone.channel);
         let mut summary = vec![show.name().trim_end_matches('…').to_lowercase()];
+        summary.extend(view.is_denoised.then(|| "denoised".to_owned()));
         summary.extend(channel.map(|channel| channel.name().to_lowercase()));
         if view.tone.exposure != 0.0 {
             let sign = if view.tone.exposure > 0.0 { "+" } else { "" };
@@ -86,7 +87,7 @@ fn brightness_ui(ui: &mut Ui, tone: &mut Tone, reason: Option<&str>) {
     number.slider(ui, &mut tone.exposure, Tone::EXPOSURES, false);
 }
 
-/// What the reader should know about a histogram.
+/// A sentence about clipping.
 fn clipping(histogram: &Histogram) -> String {
     match 100.0 * f64::from(histogram.clipped) / f64::from(histogram.pixels.max(1)) {
         0.0 => "Nothing is brighter than white.".to_owned(),
@@ -127,5 +128,9 @@ fn paint(ui: &mut Ui, histogram: &Histogram, exposure: f64) {
     let help = "How many pixels are how bright, from black to white: each twentieth of the width is twice the light, \
                 and heights are square roots of counts";
     tip(ui, response, help, None);
-    small(ui, words);
+    ui.scope(|ui| {
+        // Two lines, so that what is below stays where it is.
+        ui.set_min_height(2.0 * ui.text_style_height(&TextStyle::Small));
+        small(ui, words);
+    });
 }

@@ -18,7 +18,7 @@ const SAMPLES: u64 = 16;
 /// Largest number of pixels in the coarse layer, which has one sample each.
 const COARSE_PIXELS: u32 = 20_000;
 
-/// What was ordered last.
+/// The last order.
 struct Ordered {
     layer: Layer,
     document: Document,
@@ -40,7 +40,7 @@ pub struct ShownLayer {
 pub struct Layers {
     /// A layer that was traced, or nothing more.
     traced: Answers<Option<ShownLayer>>,
-    /// What traces paths, with the hierarchy of the last scene. Orders wait for it.
+    /// The recorder of paths, with the hierarchy of the last scene. Orders wait for it.
     recorder: Arc<Mutex<Option<PathRecorder>>>,
     ordered: Option<Ordered>,
     cancel: Arc<AtomicBool>,

@@ -35,7 +35,7 @@ pub struct Tracing {
     pub seconds_before: Option<f64>,
     /// The film with which the next run begins.
     pub film: Option<Film>,
-    /// Why the document cannot be rendered, if so.
+    /// Why the document cannot be rendered; `None` if it can.
     pub invalid: Option<String>,
     /// The run, and how many of its messages and failures have been seen.
     seen: (u64, usize, usize),
@@ -104,7 +104,7 @@ impl Tracing {
         let want = Want {
             document,
             backend: &model.backend(),
-            stop: document.stop,
+            stop: view.stop(self.main.status().run, document.stop),
             view: view.of_film(self.main.status().run, self.second.means(view)),
             is_moving: changes.is_moving(),
             is_paused: *is_paused,
@@ -113,7 +113,7 @@ impl Tracing {
         self.second.follow(context, view, &want)
     }
 
-    /// Shows the render's new messages. If the chosen device has failed, chooses the one that goes on.
+    /// Shows the render's new messages. If the chosen device has failed, chooses the one that has taken over.
     pub fn report(&mut self, device: &mut Device, toasts: &mut Toasts) {
         let status = self.main.status();
         let (messages, failures) = match self.seen {
@@ -166,7 +166,7 @@ impl Sizer {
     }
 
     /// Changes the size of the document if it should have another one. `room` is the room for the picture, pixels of
-    /// the screen; `lost` is how many seconds the document's own picture was traced, if there is one.
+    /// the screen; `lost` is for how many seconds the document's own picture was traced.
     pub fn follow(
         &mut self,
         context: &Context,

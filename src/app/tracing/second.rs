@@ -4,6 +4,7 @@
 use super::tracer::{Shown, Tracer, Want};
 use crate::app::model::{Document, Kept, Mode, Origin, Other, ViewState, differ_in_camera};
 use crate::app::toolkit::{Answers, Texture};
+use crate::film::Film;
 use crate::progressive::{ReferenceMeans, View};
 use eframe::egui::Context;
 use std::sync::Arc;
@@ -13,7 +14,7 @@ use std::sync::Arc;
 pub struct Second {
     /// `None` until another picture is traced.
     pub tracer: Option<Tracer>,
-    /// What was traced last.
+    /// The picture that was traced last.
     pub of: Option<(Other, Arc<Origin>)>,
     /// Its film when it was last read.
     film: Option<Arc<ReferenceMeans>>,
@@ -22,6 +23,38 @@ pub struct Second {
     resolved: Vec<(u64, View, Shown)>,
     /// The kept picture, the view, and three bytes per pixel.
     resolving: Answers<(Arc<Kept>, View, Vec<u8>)>,
+}
+
+/// The film of the second picture.
+#[derive(Clone, Copy)]
+pub enum OtherFilm<'a> {
+    Kept(&'a Kept),
+    Traced(&'a Tracer, &'a Shown),
+}
+
+impl OtherFilm<'_> {
+    pub fn document(&self) -> &Document {
+        match self {
+            OtherFilm::Kept(kept) => &kept.document,
+            OtherFilm::Traced(_, shown) => &shown.document,
+        }
+    }
+
+    /// Tells films and their states apart.
+    pub fn id(&self) -> (u64, u64) {
+        match self {
+            OtherFilm::Kept(kept) => (kept.number, u64::MAX),
+            OtherFilm::Traced(_, shown) => (shown.run, shown.samples),
+        }
+    }
+
+    /// Runs `look` with the film, on the render thread if there is one.
+    pub fn inspect(&self, look: impl FnOnce(&Film) + Send + 'static) {
+        match self {
+            OtherFilm::Kept(kept) => look(&kept.film),
+            OtherFilm::Traced(tracer, _) => tracer.inspect(look),
+        }
+    }
 }
 
 impl Second {
@@ -33,6 +66,14 @@ impl Second {
                 resolved.map(|(_, _, shown)| shown)
             }
             None => self.tracer.as_ref().and_then(Tracer::shown),
+        }
+    }
+
+    /// The second picture, to read its numbers.
+    pub fn film<'a>(&'a self, view: &'a ViewState) -> Option<OtherFilm<'a>> {
+        match view.compared_kept() {
+            Some(kept) => Some(OtherFilm::Kept(kept)),
+            None => self.tracer.as_ref().and_then(|tracer| Some(OtherFilm::Traced(tracer, tracer.shown()?))),
         }
     }
 
@@ -133,11 +174,11 @@ mod tests {
         let late = second.films.answer(&context);
         second.document_of(Other::Stage(&Stage::ALL[1]), &mine);
         late.give(Ok(Arc::new(ReferenceMeans { width: 1, height: 1, means: vec![[0.5; 3]] })));
-        assert!(second.films.take().is_none(), "another picture is compared by now");
+        assert!(second.films.take().is_none(), "another picture is compared meanwhile");
     }
 
     #[test]
-    fn the_other_stage_is_seen_by_my_camera_unless_that_is_the_difference() {
+    fn the_other_stage_shares_the_camera_unless_cameras_differ() {
         let mut second = Second::default();
         let mut of_cameras = Vec::new();
         for stage in Stage::ALL {

@@ -1,4 +1,4 @@
-//! What is on the screen, the traced film or its denoised picture, which is made in the background when the film has twice
+//! The subject on the screen: the traced film or its denoised picture, which is made in the background when the film has twice
 //! the samples of the one before, and at the end of a render or a pause.
 
 use super::Tracing;
@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 /// Fewer samples per pixel are not worth denoising.
 const LEAST_SAMPLES: u64 = 4;
 
-/// Filtering may take one in so many parts of the time, because it takes processors from the tracer.
+/// Filtering takes at most one part in this many of the time, because it takes processors from the tracer.
 const SHARE: u32 = 25;
 
 /// Tells pictures apart: the run of the render, and the samples of the denoised picture.
@@ -56,7 +56,7 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// Asks `query` about `key`. `look` finds the answer, if any, in the film or its denoised picture.
+    /// Asks `query` about `key`. `look` finds the optional answer in the film or its denoised picture.
     pub fn ask<K: PartialEq, T: Send + 'static>(
         &self,
         context: &Context,
@@ -116,6 +116,8 @@ impl Denoising {
                 answer.give_from("denoise", move || {
                     let outcome = halves.map_err(|reason| reason.to_string());
                     let outcome = outcome.and_then(|halves| denoise(halves, &stop).ok_or_else(String::new));
+                    let outcome =
+                        outcome.and_then(|found| found.checked().map_err(|reason| reason.to_string()));
                     Ok(((run, outcome.map(Arc::new)), begin.elapsed()))
                 });
             });

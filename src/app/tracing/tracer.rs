@@ -29,7 +29,7 @@ const PAUSED_SAMPLES: u64 = 8;
 /// The longest time between two pictures.
 const PICTURE_INTERVAL_LIMIT: Duration = Duration::from_millis(250);
 
-/// What should be rendered now.
+/// The render that the window wants now.
 pub struct Want<'a> {
     pub document: &'a Document,
     pub backend: &'a BackendChoice,
@@ -237,7 +237,7 @@ impl Tracer {
             && self.shown.as_ref().is_some_and(is_preview)
     }
 
-    /// Renders what is wanted, at once or after the next picture; goes on with `film`, if there is one.
+    /// Renders what is wanted, at once or after the next picture; resumes the optional `film`.
     ///
     /// # Errors
     /// Why the document cannot be rendered; the current render continues.
@@ -326,7 +326,7 @@ mod tests {
     use crate::stages::Stage;
 
     #[test]
-    fn passes_are_short_while_something_moves_and_few_during_a_pause() {
+    fn passes_are_short_in_motion_and_few_in_a_pause() {
         let document = Document::new(Origin::usual());
         let backend = BackendChoice::Cpu(CpuOptions::default());
         let plan = |stop, is_moving, is_held, preview| {
@@ -354,7 +354,7 @@ mod tests {
         BackendChoice::Cpu(CpuOptions::default())
     }
 
-    /// What a window asks for that shows this document. Its render never ends.
+    /// The render that a window with this document wants. It never ends.
     fn wish<'a>(document: &'a Document, backend: &'a BackendChoice, is_moving: bool) -> Want<'a> {
         Want {
             document,
@@ -377,7 +377,7 @@ mod tests {
             tracer.started.as_mut().unwrap().is_pictured = is_pictured;
             tracer.want(&want, None).unwrap();
             assert_eq!(tracer.is_full(&document), is_pictured);
-            // The same again goes on.
+            // The same picture again continues.
             let run = tracer.status().run;
             tracer.want(&want, None).unwrap();
             assert_eq!(tracer.status().run, run);

@@ -23,9 +23,9 @@ pub struct Display {
     pub values: PixelValues,
     pub denoising: Denoising,
     pub kept: KeptActions,
-    /// Nothing but sky and ground is in sight, unlike from the camera of the stage.
+    /// Only sky and ground are in sight, unlike from the stage's camera.
     pub is_lost: bool,
-    /// Camera and scene of which that was found.
+    /// The camera and scene that were judged.
     judged: Option<(Camera, Arc<CheckedScene>)>,
     /// What "Show me" has changed, to return to.
     pub sight: Option<Sighted>,
@@ -53,6 +53,8 @@ impl Display {
         let fault = self.layers.follow(context, view.show().layer(), document);
         if let Some(reason) = fault {
             toasts.bad(format!("This view cannot be traced: {reason}"));
+        } else if view.show().layer().is_none() {
+            toasts.end_error("This view cannot be traced");
         }
         self.tone.follow(&subject, view.tone.white(), context);
         let is_picture = view.mode().is_none() && view.show() == Show::Picture;

@@ -126,14 +126,16 @@ pub fn whole_pixels(room: Rect, pixels_per_point: f32) -> [u32; 2] {
     [pixels.x.max(0.0) as u32, pixels.y.max(0.0) as u32]
 }
 
-/// What the user does in a frame.
+/// The user's actions in a frame.
 #[derive(Default)]
 pub struct Touch {
     /// The camera or a sphere was moved.
     pub is_move: bool,
     /// The pixel under the pointer.
     pub hovered: Option<[u32; 2]>,
-    /// What a click has done, or why it does nothing, in words.
+    /// The other picture of a comparison lies over it.
+    pub is_over_other: bool,
+    /// A message about the effect of a click, or why it has none.
     pub said: Option<String>,
 }
 

@@ -97,7 +97,7 @@ fn outline(selected: &Selected, document: &Document) -> Outline {
     Outline::new(&document.camera, document.aspect(), center, radius)
 }
 
-/// What a drag that begins at this point of the screen would hold.
+/// The part that a drag from this point of the screen would hold.
 fn grasped(rect: Rect, selected: &Selected, document: &Document, at: Pos2, is_level: bool) -> Option<Held> {
     let outline = outline(selected, document);
     extent(&outline)?;

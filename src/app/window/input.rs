@@ -13,7 +13,7 @@ const FLY_SHARE_PER_SECOND: f64 = 0.7;
 /// Speed factor while Shift is held.
 const FAST: f64 = 4.0;
 
-/// What the keys of a presenter's remote control do in a presentation, besides Page Up, Page Down and B.
+/// Keys of a presenter's remote control in a presentation, besides Page Up, Page Down and B.
 const REMOTE: [(Key, Command); 5] = [
     (Key::ArrowRight, Command::NextStage),
     (Key::ArrowDown, Command::NextStage),

@@ -34,7 +34,7 @@ pub struct Hit {
     pub is_outside: bool,
 }
 
-/// What happens at the end of a ray.
+/// The event at the end of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
     /// The ray leaves the scene, and the path collects light of the sky.
@@ -108,7 +108,8 @@ fn coin(settings: &RenderSettings, pixel: u32, index: u64, ray: u32) -> f64 {
     let (counter, _) = SampleBlock { half, first, count: 1 }.counter(settings);
     let camera_stream = rng::sampler_key(lane, HalfKey::new(settings, half), Word(pixel));
     let stream = camera_stream + Word(stream_stride(settings.sampler).wrapping_mul(ray));
-    let [[first, _], _] = rng::numbers(lane, settings, Word(pixel), Word(counter), stream, false);
+    let numbers = rng::numbers(lane, settings, Word(pixel), Word(counter), camera_stream, stream, false);
+    let [[first, _], _] = numbers;
     f64::from(unit_float(lane, first).0)
 }
 
@@ -118,7 +119,7 @@ fn hit_of(sphere: &Sphere, number: usize, point: DVec3, direction: DVec3) -> Hit
     Hit { sphere: number, point, normal: if is_outside { outward } else { -outward }, is_outside }
 }
 
-/// What happens at a hit. `next` is the direction of the path's next ray, if it has one.
+/// The event at a hit. `next` is the direction of the path's next ray, if it has one.
 fn event_of(
     job: &RenderJob,
     hit: &Hit,
@@ -173,7 +174,7 @@ fn lobe_of(
 }
 
 impl Step {
-    /// What happens at the end of the ray, in one or two sentences.
+    /// Describes the event at the end of the ray in one or two sentences.
     pub fn sentence(&self, job: &RenderJob) -> String {
         let Some(hit) = self.hit else {
             return "The ray leaves the scene and brings back the light of the sky.".to_owned();

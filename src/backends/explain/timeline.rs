@@ -3,7 +3,7 @@
 use crate::kernel::path_record::PathRecord;
 use crate::scene::{Look, Scene};
 
-/// What a lane does in one step of its packet.
+/// The activity of a lane in one step of its packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
     /// Traces a ray from the camera.

@@ -1,6 +1,6 @@
 //! OpenEXR as any program writes it.
 
-use super::read::{ReadPicture, Values, check_memory, note_on_alpha, note_on_primaries, pixel_count};
+use super::decoded::{ReadPicture, Values, check_memory, note_on_alpha, note_on_primaries, pixel_count};
 use crate::film::checkpoint;
 use anyhow::{Result, anyhow, bail};
 use exr::error::Error;

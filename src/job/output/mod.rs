@@ -1,13 +1,15 @@
 //! Picture files: 8-bit PNG, and OpenEXR with the whole film, both with a [`Description`]; PPM and PFM without one.
 //! Pictures of other programs can be read, too: [`read_picture`].
 
+mod decoded;
 mod exr;
 mod netpbm;
 mod png;
 mod ppm;
 mod read;
 
-pub use read::{Damage, Encoding, Linear, ReadPicture, Values, decode_picture, displayed, read_picture};
+pub use decoded::{Damage, Encoding, Incomplete, Linear, ReadPicture, Values, displayed};
+pub use read::{decode_picture, read_picture};
 
 pub use crate::film::{Description, RECIPE_KEY, key};
 

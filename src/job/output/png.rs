@@ -1,6 +1,6 @@
 //! 8-bit PNG. Each key of the description is the keyword of a text chunk; the recipe's chunk is compressed.
 
-use super::read::note_on_primaries;
+use super::decoded::note_on_primaries;
 use super::{Description, Encoding, RECIPE_KEY, RECIPE_LIMIT, write_rows};
 use crate::film::Film;
 use crate::stages::Transfer;
@@ -70,9 +70,9 @@ pub(super) fn read_description(reader: impl BufRead + Seek) -> Result<Option<Des
 /// What a PNG says about its transfer curve and its primaries: the meaning of its values if it is one that this program
 /// knows, and notes on what is ignored. The chunk that comes first here overrides the others, as in the specification.
 pub(super) fn colours(reader: &mut (impl BufRead + Seek)) -> (Option<Encoding>, Vec<String>) {
-    let mut decoder = ::png::Decoder::new(reader);
     // Damage is reported when the pixels are read.
-    let Ok(info) = decoder.read_header_info() else { return (None, Vec::new()) };
+    let Ok(decoder) = ::png::Decoder::new(reader).read_info() else { return (None, Vec::new()) };
+    let info = decoder.info();
     if let Some(codes) = info.coding_independent_code_points {
         let (stated, curve) = match codes.transfer_function {
             8 => (Some(Encoding::Book(Transfer::Linear)), None),

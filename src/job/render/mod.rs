@@ -63,7 +63,7 @@ impl RenderJob {
         RenderJob { scene, camera, settings, rules }.seen_by(camera, settings)
     }
 
-    /// The same scene and rules with another camera or picture size. The scene is shared and not validated again.
+    /// The same scene and rules with another camera or other settings. The scene is shared and not validated again.
     ///
     /// # Errors
     /// The first invalid value of the camera or the settings.
@@ -72,10 +72,10 @@ impl RenderJob {
         for (what, value, limit, remedy) in [
             ("width", settings.width, SIZE_LIMIT, "choose a smaller picture or stitch several"),
             ("height", settings.height, SIZE_LIMIT, "choose a smaller picture or stitch several"),
-            ("max_depth", settings.max_depth, DEPTH_LIMIT, "50 rays a path are the book's"),
+            ("max_depth", settings.max_depth, DEPTH_LIMIT, "the book uses 50 rays per path"),
         ] {
             if !(1..=limit).contains(&value) {
-                let reason = format!("{what} is {value}, but must be within 1 and {limit}; {remedy}");
+                let reason = format!("{what} is {value}, but must be between 1 and {limit}; {remedy}");
                 return Err(JobError::Settings(reason));
             }
         }
@@ -148,7 +148,7 @@ pub enum JobError {
     Settings(String),
 }
 
-/// Statistics of a call to [`Renderer::accumulate`].
+/// Statistics of a call to [`Renderer::advance`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stats {
     /// Completed paths: pixels times samples.
@@ -177,12 +177,12 @@ impl Stats {
     }
 }
 
-/// What a renderer has made for its job; empty without one.
+/// A renderer's kernel for its job; empty without a job.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct KernelInfo {
     /// The kernel, and how long it took to compile.
     pub about: String,
-    /// The parts that it does not have.
+    /// The parts that it leaves out.
     pub left_out: Vec<&'static str>,
     /// Wall time of building the hierarchy; zero if there is none.
     pub hierarchy_time: Duration,
@@ -249,15 +249,77 @@ pub struct BackendInfo {
     pub threads: usize,
 }
 
+/// Figures of a renderer about its prepared job.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Diagnostics {
+    pub kernel: KernelInfo,
+    /// Packet occupancy since the job's first pass; `None` if the renderer traces without packets.
+    pub tile_occupancy: Option<TileOccupancy>,
+    /// Total time of all dispatches so far by the device's own clock; `None` without one.
+    pub device_time: Option<Duration>,
+    /// Whether the renderer acts on [`Control::stop`], so that stopping takes at most half the time of a pass.
+    pub stops_early: bool,
+}
+
+/// How a call of [`Renderer::advance`] may end.
+#[derive(Clone, Copy, Debug)]
+pub struct Control<'a> {
+    /// Ends the call at the next small unit of work and leaves the film's sums incomplete.
+    pub cancel: &'a AtomicBool,
+    /// The renderer either finishes or withdraws what it has added, whichever is quicker. It may also ignore this flag.
+    pub stop: &'a AtomicBool,
+    /// Whether samples may stay with the renderer until a later call adds them to the same film.
+    pub may_defer: bool,
+}
+
+impl<'a> Control<'a> {
+    /// A call that ends only when all samples are in the film, or `cancel` is set.
+    pub fn new(cancel: &'a AtomicBool) -> Self {
+        static NEVER: AtomicBool = AtomicBool::new(false);
+        Control { cancel, stop: &NEVER, may_defer: false }
+    }
+
+    /// Like [`Control::new`], but samples may stay with the renderer.
+    pub fn deferring(cancel: &'a AtomicBool) -> Self {
+        Control { may_defer: true, ..Control::new(cancel) }
+    }
+}
+
+/// The result of [`Renderer::advance`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outcome {
+    Added {
+        /// Statistics of the samples that this call added to the film.
+        stats: Stats,
+        /// Which backends added how many samples per pixel; empty if the renderer itself added all.
+        credits: Vec<(BackendInfo, u64)>,
+    },
+    /// The call was stopped and the film is unchanged.
+    Withdrawn,
+}
+
+impl From<Stats> for Outcome {
+    fn from(stats: Stats) -> Self {
+        Outcome::Added { stats, credits: Vec::new() }
+    }
+}
+
+impl Outcome {
+    /// Statistics of the samples that were added.
+    pub fn stats(&self) -> Stats {
+        match self {
+            Outcome::Added { stats, .. } => *stats,
+            Outcome::Withdrawn => Stats::default(),
+        }
+    }
+}
+
 /// A backend, which adds samples to a film.
 pub trait Renderer: Send {
-    /// Describes this backend.
     fn info(&self) -> BackendInfo;
 
-    /// Which backends added how many of the `added` samples per pixel of the last [`Renderer::accumulate`]. By default,
-    /// this renderer added all of them.
-    fn credits(&self, added: u64) -> Vec<(BackendInfo, u64)> {
-        vec![(self.info(), added)]
+    fn diagnostics(&self) -> Diagnostics {
+        Diagnostics::default()
     }
 
     /// Takes messages that the user has not seen yet, such as a software adapter in use or a part that failed.
@@ -265,23 +327,8 @@ pub trait Renderer: Send {
         Vec::new()
     }
 
-    /// Total time of all dispatches so far by the device's own clock; `None` without one.
-    fn device_time(&self) -> Option<Duration> {
-        None
-    }
-
-    /// Describes what it has made for the prepared job.
-    fn kernel(&self) -> KernelInfo {
-        KernelInfo::default()
-    }
-
-    /// Packet occupancy since the prepared job's first pass; `None` if the renderer traces without packets.
-    fn tile_occupancy(&self) -> Option<TileOccupancy> {
-        None
-    }
-
-    /// Begins a film of `job`: builds whatever tracing needs and is not there yet (prepared scene, hierarchy, kernels),
-    /// and discards traced samples that were not collected.
+    /// Begins a film of `job`: builds whatever tracing needs and is missing (prepared scene, hierarchy, kernels), and
+    /// discards traced samples that are not in a film.
     ///
     /// Checks `cancel` while the scene is prepared and while kernels compile.
     ///
@@ -290,78 +337,53 @@ pub trait Renderer: Send {
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError>;
 
     /// Estimates how long a sample of every pixel of the prepared job takes, by tracing about one pixel in `one_in` and
-    /// discarding the result: `film` has the job's size and stays unchanged. In long passes a sample takes less time.
-    /// `None` if the renderer cannot tell.
-    fn try_out(&mut self, _film: &mut Film, _one_in: usize, _cancel: &AtomicBool) -> Option<Duration> {
+    /// discarding the result. In long passes a sample takes less time. `None` if the renderer cannot tell.
+    fn estimate_sample_time(&mut self, _one_in: usize, _cancel: &AtomicBool) -> Option<Duration> {
         None
     }
 
-    /// Adds samples `range` of every pixel to `film` and records them there. Prepares the job if necessary.
-    ///
-    /// Checks `cancel` between small units of work.
+    /// Adds samples `range` of every pixel to `film`, which records the samples that it contains. Prepares the job if
+    /// necessary.
     ///
     /// # Errors
     /// After [`RenderError::Cancelled`] and [`RenderError::FilmLost`] the film's sums are incomplete: discard it. After
-    /// any other error the film is unchanged. It is also unchanged after a panic: a renderer that adds to it piece by
-    /// piece catches panics and removes the pieces.
+    /// any other error the film is unchanged, and deferred samples are lost. The film is also unchanged after a panic: a
+    /// renderer that adds to it piece by piece catches panics and removes the pieces.
+    fn advance(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        control: &Control,
+    ) -> Result<Outcome, RenderError>;
+
+    /// Calls [`Renderer::advance`] with [`Control::new`].
+    ///
+    /// # Errors
+    /// As for [`Renderer::advance`].
     fn accumulate(
         &mut self,
         job: &RenderJob,
         range: Range<u64>,
         film: &mut Film,
         cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError>;
-
-    /// Like [`Renderer::accumulate`], but need not wait for results: samples may stay with the renderer until a later
-    /// call adds them to the same film. The film records the samples that it contains, and the statistics cover those
-    /// that this call added.
-    ///
-    /// # Errors
-    /// As for [`Renderer::accumulate`]; samples that are not in the film are then lost.
-    fn advance(
-        &mut self,
-        job: &RenderJob,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
-        self.accumulate(job, range, film, cancel)
+        Ok(self.advance(job, range, film, &Control::new(cancel))?.stats())
     }
 
-    /// Like [`Renderer::advance`], but once `stop` is set, either finishes or removes what it has added, whichever is
-    /// quicker. `None` if it removed it: the film is then unchanged. By default, it finishes.
-    ///
-    /// # Errors
-    /// As for [`Renderer::advance`].
-    fn advance_unless(
-        &mut self,
-        job: &RenderJob,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-        _stop: &AtomicBool,
-    ) -> Result<Option<Stats>, RenderError> {
-        self.advance(job, range, film, cancel).map(Some)
-    }
-
-    /// Whether [`Renderer::advance_unless`] heeds `stop`, so that stopping takes at most half the time of a pass.
-    fn heeds_stop(&self) -> bool {
-        false
-    }
-
-    /// Requests what has been traced so far: the next [`Renderer::advance`] adds it to the film while tracing.
+    /// Requests the samples deferred so far: the next [`Renderer::advance`] adds them to the film while tracing.
     ///
     /// # Errors
     /// [`RenderError::Backend`].
-    fn fetch(&mut self) -> Result<(), RenderError> {
+    fn request_readback(&mut self) -> Result<(), RenderError> {
         Ok(())
     }
 
-    /// Waits for everything traced so far and adds what the film lacks.
+    /// Waits for all deferred samples and adds them to the film.
     ///
     /// # Errors
     /// [`RenderError::Backend`]; samples that are not in the film are then lost.
-    fn collect(&mut self, _film: &mut Film) -> Result<Stats, RenderError> {
+    fn finish(&mut self, _film: &mut Film) -> Result<Stats, RenderError> {
         Ok(Stats::default())
     }
 }

@@ -193,7 +193,7 @@ impl Bench<'_> {
             let seconds = Run::of(&candidate.trace(job, tried, self.cancel)?).seconds;
             if seconds >= WARM_UP_SECONDS.min(0.25 * limit) || tried >= samples {
                 row.samples_per_pixel = affordable(samples, least, seconds / tried as f64, limit);
-                row.left_out = candidate.start()?.kernel().left_out;
+                row.left_out = candidate.start()?.diagnostics().kernel.left_out;
                 return Ok(());
             }
             tried = (4 * tried).min(samples);

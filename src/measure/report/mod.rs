@@ -192,7 +192,7 @@ fn measured(
     let mut denoised = Run { curve: raw.curve.denoised(), ..raw.clone() };
     // The first picture pays for caches, threads and memory, so trace it off the clock.
     candidate.trace(job, 1, cancel)?;
-    let device_begin = candidate.start()?.device_time();
+    let device_begin = candidate.start()?.diagnostics().device_time;
     let mut film = candidate.new_film(job);
     let (mut total, mut wall) = (Stats::default(), Duration::ZERO);
     let mut samples = 1;
@@ -202,7 +202,7 @@ fn measured(
         // Starting the C program and reading its picture do not count as rendering.
         wall += if candidate.is_baseline() { stats.trace } else { begin.elapsed() };
         total.add(&stats);
-        let device = candidate.start()?.device_time().zip(device_begin);
+        let device = candidate.start()?.diagnostics().device_time.zip(device_begin);
         let point = |film: &Film, mse_estimate, filter: Duration| {
             let [mse, rel_mse] = reference.errors(film);
             Measured {

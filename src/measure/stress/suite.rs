@@ -151,7 +151,7 @@ mod tests {
     use super::*;
     use crate::backends::BackendChoice;
     use crate::film::fixed_point;
-    use crate::job::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+    use crate::job::render::{BackendInfo, Control, Outcome, RenderError, RenderJob, Renderer, Stats};
     use crate::render_cpu::{CpuOptions, Isa};
     use std::ops::Range;
 
@@ -214,13 +214,13 @@ mod tests {
             Ok(())
         }
 
-        fn accumulate(
+        fn advance(
             &mut self,
             job: &RenderJob,
             samples: Range<u64>,
             film: &mut Film,
-            _: &AtomicBool,
-        ) -> Result<Stats, RenderError> {
+            _: &Control,
+        ) -> Result<Outcome, RenderError> {
             let radiance = (self.0)(job);
             film.record(samples, 0)?;
             for half in 0..2 {
@@ -228,7 +228,7 @@ mod tests {
                 film.halves_mut()[half].fill(fixed_point([sum; 3]).unwrap());
             }
             self.1.extend(is_far(job).then(|| "too far".to_owned()));
-            Ok(Stats::default())
+            Ok(Stats::default().into())
         }
     }
 

@@ -1,7 +1,7 @@
 //! Lines over two axes.
 
 use super::axis::position;
-use super::svg::{Area, Drawn, FAINT_INK, FINE_GRID, FONT, GRID, GUIDE, INK, PALETTE};
+use super::style::{Area, Drawn, FAINT_INK, FINE_GRID, FONT, GRID, GUIDE, INK, PALETTE};
 use super::{LineChart, Look, Point};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};

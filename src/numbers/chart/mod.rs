@@ -5,6 +5,7 @@
 
 mod axis;
 mod lines;
+mod style;
 mod svg;
 
 pub use axis::Axis;

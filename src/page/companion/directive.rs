@@ -1,12 +1,15 @@
 //! Directives: paragraphs such as `{{figure sky}}` that become parts of the page.
 
-use super::back_matter;
 use super::excerpt::{self, Excerpt};
 use super::library::FOLDER;
-use super::pictures::{self, Picture};
+use super::lists;
+use super::picture::Picture;
+use super::pictures;
 use super::prose::Place;
-use super::site::{Site, Uses};
+use super::site::Site;
 use super::timeline;
+use super::uses::Uses;
+use super::words::{numbered, typographic};
 use crate::page::gallery::{Figure, is_about_pixels};
 use crate::stages::Stage;
 use crate::system::suggest::similar_names;
@@ -15,29 +18,6 @@ use maud::{Markup, PreEscaped, html};
 
 /// The directives and their arguments. More lines hold a caption, or what to quote.
 const KNOWN: &str = "figure ID, code, fold TITLE, unfold, mistakes STAGE, limits STAGE, samples STAGE, denoised STAGE SAMPLES, table NAME, chart NAME, diagram NAME, timeline STAGE, glossary, references";
-
-/// The caption of a figure with the next number.
-pub fn numbered(caption: &Markup, uses: &mut Uses) -> Markup {
-    uses.numbered_figures += 1;
-    html! { figcaption { span .figure-number { "Figure " (uses.numbered_figures) "." } " " (caption) } }
-}
-
-/// Code within a line, which does not break after the hyphens of a flag.
-pub fn code_words(text: &str) -> Markup {
-    html! {
-        code {
-            @for (place, word) in text.split(' ').enumerate() {
-                @if place > 0 { " " }
-                @if word.starts_with('-') { span .nb { (word) } } @else { (word) }
-            }
-        }
-    }
-}
-
-/// Replaces apostrophes by typographic ones.
-pub fn typographic(text: &str) -> String {
-    text.replace('\'', "’")
-}
 
 /// The HTML of a directive, given without its braces.
 pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) -> Result<Markup> {
@@ -76,8 +56,8 @@ pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) ->
         ["chart", name] => site.measured.chart(name, uses),
         ["diagram", name] => diagram(site, name, caption()?, uses),
         ["timeline", stage] => timeline::figure(stage, uses),
-        ["glossary"] => Ok(back_matter::glossary(site, uses)?),
-        ["references"] => Ok(back_matter::references(site, uses)?),
+        ["glossary"] => Ok(lists::glossary(site, place, uses)?),
+        ["references"] => Ok(lists::references(site, place, uses)?),
         _ => bail!("{{{{{directive}}}}} is no directive; use one of {KNOWN}"),
     }
 }

@@ -52,8 +52,8 @@ const FILES: &[(&str, &str)] = embedded![
     "assets/web/": "film.js" "live.css" "live.js" "scene.js";
     "examples/": "lanes.rs";
     "reference/": "rt_weekend.c";
-    "shaders/": "aside.wgsl" "bindings.wgsl" "bvh.wgsl" "camera.wgsl" "lanes.wgsl" "material.wgsl"
-        "path.wgsl" "resolve.wgsl" "rng.wgsl" "sphere.wgsl";
+    "shaders/": "bindings.wgsl" "bvh.wgsl" "camera.wgsl" "lanes.wgsl" "material.wgsl"
+        "path.wgsl" "resolve.wgsl" "rng.wgsl" "rules.wgsl" "sphere.wgsl" "suspend.wgsl";
     "src/batch/": "progress.rs";
     "src/denoise/": "mod.rs";
     "src/film/": "error_estimate.rs" "fixed_point.rs" "resolve.rs";
@@ -63,7 +63,7 @@ const FILES: &[(&str, &str)] = embedded![
     "src/render_cpu/": "bvh.rs" "camera.rs" "kernels.rs" "material.rs" "rng.rs" "sphere.rs" "tiles.rs"
         "work.rs";
     "src/render_cpu/lanes/": "vector.rs";
-    "src/render_cpu/path/": "collect.rs" "mod.rs" "send.rs";
+    "src/render_cpu/path/": "scatter.rs" "schedule.rs" "shade.rs";
     "src/render_gpu/": "schedule.rs";
     "src/scene/builtin/": "book.rs";
     "src/scene/": "camera.rs";

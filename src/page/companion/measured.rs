@@ -1,8 +1,8 @@
 //! Tables and charts of stored measurements, each with its command and machine.
 
-use super::directive::{code_words, numbered};
 use super::library::{FOLDER, Fault, Library};
-use super::site::Uses;
+use super::uses::Uses;
+use super::words::{code_words, numbered};
 use crate::measure;
 use crate::measure::report::{self, CurveSummary};
 use crate::numbers::chart::{self, UNTITLED_TOP};

@@ -8,12 +8,16 @@ mod directive;
 mod excerpt;
 mod highlight;
 mod library;
+mod lists;
 mod measured;
 mod page;
+mod picture;
 mod pictures;
 mod prose;
 mod site;
 mod timeline;
+mod uses;
+mod words;
 
 pub use excerpt::{Excerpt, excerpts_between};
 pub use highlight::Highlighter;
@@ -79,7 +83,7 @@ pub fn write(options: &CompanionOptions, interrupt: &Interrupt) -> Result<Outcom
         prints_stills: false,
     };
     let work = Work::begin(&order, interrupt)?;
-    make_directory(&out.join(pictures::FOLDER)).map_err(Failure::Input)?;
+    make_directory(&out.join(picture::FOLDER)).map_err(Failure::Input)?;
     // Write the page first, so that it can be read while its figures are rendered.
     let build = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_millis();
     let reload = format!("<script>\n{}</script>\n", RELOAD.replace("BUILD", &build.to_string()));

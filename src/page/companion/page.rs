@@ -4,9 +4,10 @@ use super::agreement;
 use super::chapter::Chapter;
 use super::directive;
 use super::library::Fault;
-use super::pictures::Picture;
+use super::picture::Picture;
 use super::prose;
-use super::site::{Site, Uses};
+use super::site::Site;
+use super::uses::Uses;
 use crate::page::gallery::Panel;
 use crate::page::web;
 use crate::stages::{BOOK_URL, Stage, book_url, heading};
@@ -149,7 +150,7 @@ fn navigation(site: &Site) -> Markup {
 
 fn section(site: &Site, chapter: &Chapter, uses: &mut Uses) -> Result<Markup, Fault> {
     let (id, title) = (&chapter.id, &chapter.facts.title);
-    let text = prose::chapter(site, chapter, uses)?;
+    let text = prose::chapter(site, chapter, directive::html, uses)?;
     agreement::check(&site.library, chapter)?;
     let of_book = |number| {
         let found = heading(number).map(|heading| (number, book_url(number), heading));

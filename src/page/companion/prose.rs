@@ -1,10 +1,11 @@
 //! Markdown to HTML, with the page's own links, directives, formulas and colours.
 
 use super::chapter::Chapter;
-use super::directive::{self, typographic};
 use super::excerpt::split_heading;
 use super::library::{Fault, line_of};
-use super::site::{Site, Uses};
+use super::site::Site;
+use super::uses::Uses;
+use super::words::{code_words, typographic};
 use crate::page::gallery::Figure;
 use crate::stages;
 use anyhow::{Context, Result, bail, ensure};
@@ -18,6 +19,9 @@ use std::iter::Peekable;
 use std::ops::Range;
 use std::vec::IntoIter;
 
+/// Makes the HTML of a directive, given without its braces. A directive may have Markdown in it.
+pub type Directive = fn(&Site, &Place<'_>, &str, &mut Uses) -> Result<Markup>;
+
 /// A text and its location.
 pub struct Place<'a> {
     file: &'a str,
@@ -25,6 +29,7 @@ pub struct Place<'a> {
     /// The chapter; `None` in the back matter.
     chapter: Option<&'a Chapter>,
     text: &'a str,
+    directive: Directive,
 }
 
 impl Place<'_> {
@@ -33,6 +38,20 @@ impl Place<'_> {
         let html = convert(site, &Place { text: text.trim(), ..*self }, uses)?.into_string();
         let inside = html.trim().strip_prefix("<p>").and_then(|html| html.strip_suffix("</p>"));
         Ok(PreEscaped(inside.unwrap_or(&html).to_owned()))
+    }
+
+    /// A short text of the back matter, from line `at` of a file, as HTML without its paragraph.
+    pub fn short_text(
+        &self,
+        site: &Site,
+        file: &str,
+        at: usize,
+        text: &str,
+        uses: &mut Uses,
+    ) -> Result<Markup, Fault> {
+        let directive = self.directive;
+        let place = Place { file, lines_before: at.saturating_sub(1), chapter: None, text, directive };
+        place.inside(site, text, uses)
     }
 
     /// Gives the chapter's symbols their colours in a formula or in highlighted code.
@@ -63,7 +82,12 @@ impl Place<'_> {
     }
 }
 
-pub fn chapter(site: &Site, chapter: &Chapter, uses: &mut Uses) -> Result<Markup, Fault> {
+pub fn chapter(
+    site: &Site,
+    chapter: &Chapter,
+    directive: Directive,
+    uses: &mut Uses,
+) -> Result<Markup, Fault> {
     let text = site.measured.filled(&chapter.body).map_err(|(position, error)| {
         let line = chapter.lines_before + line_of(&chapter.body, position);
         Fault::new(&chapter.file, line, format!("{error:#}"))
@@ -73,14 +97,9 @@ pub fn chapter(site: &Site, chapter: &Chapter, uses: &mut Uses) -> Result<Markup
         lines_before: chapter.lines_before,
         chapter: Some(chapter),
         text: &text,
+        directive,
     };
     convert(site, &place, uses)
-}
-
-/// A short text of the back matter, from line `at` of a file, as HTML without its paragraph.
-pub fn short_text(site: &Site, file: &str, at: usize, text: &str, uses: &mut Uses) -> Result<Markup, Fault> {
-    let place = Place { file, lines_before: at.saturating_sub(1), chapter: None, text };
-    place.inside(site, text, uses)
 }
 
 /// The anchor for a heading: `What a lane is` becomes `what-a-lane-is`.
@@ -190,7 +209,7 @@ impl Converter<'_> {
                     html! { span .formula tabindex="0" role="group" aria-label="Formula" { (formula) } },
                 ));
             }
-            Event::Code(text) => out.push(inline(directive::code_words(&text))),
+            Event::Code(text) => out.push(inline(code_words(&text))),
             Event::Html(_) | Event::InlineHtml(_) | Event::Start(Tag::Image { .. }) => {
                 bail!("HTML and pictures are not allowed in the text; use Markdown or a directive");
             }
@@ -207,7 +226,7 @@ impl Converter<'_> {
         let text = self.place.text[range.clone()].trim();
         if let Some(inside) = text.strip_prefix("{{").and_then(|text| text.strip_suffix("}}")) {
             skip_to(rest, TagEnd::Paragraph);
-            return directive::html(self.site, self.place, inside.trim(), self.uses).map(block);
+            return (self.place.directive)(self.site, self.place, inside.trim(), self.uses).map(block);
         }
         // A lone formula may be wider than the text.
         let is_formula = text.len() > 4 && text.starts_with("$$") && text.ends_with("$$");

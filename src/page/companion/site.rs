@@ -1,15 +1,13 @@
-//! Everything that the page's texts can refer to, and what they did refer to.
+//! Everything that the page's texts can refer to.
 
 use super::back_matter::{GLOSSARY, REFERENCES, Reference, Term};
 use super::chapter::Chapter;
 use super::highlight::Highlighter;
 use super::library::{Entry, Fault, Library};
 use super::measured::Measured;
-use super::pictures::Picture;
-use crate::page::gallery::Figure;
+use super::uses::Uses;
 use anyhow::{Result, anyhow};
 use math_core::{LatexToMathML, MathCoreConfig};
-use std::collections::{BTreeMap, BTreeSet};
 
 /// The targets available to texts.
 pub struct Site {
@@ -25,23 +23,6 @@ pub struct Site {
     pub highlighter: Highlighter,
     /// Makes MathML, so that readers need neither scripts nor the network.
     pub formulas: LatexToMathML,
-}
-
-/// The references that the texts have made so far.
-#[derive(Debug, Default)]
-pub struct Uses {
-    /// Keys of linked terms, each with the short title of the first chapter that links it.
-    pub terms: BTreeMap<String, String>,
-    /// The page's own pictures.
-    pub pictures: Vec<Picture>,
-    /// In the order of the page.
-    pub figures: Vec<&'static Figure>,
-    /// How many figures have a number so far.
-    pub numbered_figures: usize,
-    /// Anchors of headings and figures, which must be unique.
-    pub anchors: BTreeSet<String>,
-    /// Linked anchors, each with file and line.
-    pub targets: Vec<(String, String, usize)>,
 }
 
 impl Site {

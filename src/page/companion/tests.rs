@@ -3,8 +3,9 @@
 use super::back_matter::{Area, Reference, Term};
 use super::chapter::Chapter;
 use super::library::{Entry, Fault, Library};
-use super::site::{Site, Uses};
-use super::{page, prose};
+use super::site::Site;
+use super::uses::Uses;
+use super::{directive, page, prose};
 use crate::stages::Stage;
 
 /// The page's site with two terms, two references and two chapters without text: 06-normals and 01-languages.
@@ -30,7 +31,7 @@ fn site() -> Site {
 fn converted(site: &Site, text: &str, uses: &mut Uses) -> Result<String, Fault> {
     let normals = site.chapters.iter().find(|chapter| chapter.id == "normals").unwrap();
     let chapter = Chapter { body: text.to_owned(), lines_before: 4, ..normals.clone() };
-    prose::chapter(site, &chapter, uses).map(|html| html.into_string())
+    prose::chapter(site, &chapter, directive::html, uses).map(|html| html.into_string())
 }
 
 /// The HTML of a single text.

@@ -1,7 +1,7 @@
 //! A figure of the steps of a packet's lanes, laid out from recorded paths.
 
-use super::directive::numbered;
-use super::site::Uses;
+use super::uses::Uses;
+use super::words::numbered;
 use crate::backends::explain::{Activity, Timeline, timeline};
 use crate::render_cpu::{Isa, PathRecorder};
 use crate::stages::Stage;

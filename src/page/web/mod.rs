@@ -8,15 +8,24 @@ mod sliders;
 
 use crate::film::PixelSum;
 use crate::job::render::{RenderJob, RenderSettings};
-use crate::kernel::{GpuAside, Tag, WORKGROUP_SIZE, records};
+use crate::kernel::{GpuSuspendedPath, Tag, WORKGROUP_SIZE, records};
 use crate::render_gpu::shader_source::{EntryPoint, shared};
-use crate::render_gpu::{Exported, TURN_LIMIT};
+use crate::render_gpu::{
+    BUDGET_LIMITS, BUSY_THREADS_OF_SOFTWARE, Exported, FIRST_PATHS, GROWTH_LIMIT, ITERATION_LIMIT,
+    SOFTWARE_THREADS_IN_STEP,
+};
 use crate::stages::Stage;
 use anyhow::{Context, Result};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
 use sliders::sliders;
+
+/// Target time of a dispatch in a browser, which can show a picture after each.
+const DISPATCH_MS: f64 = 20.0;
+
+/// Maximum number of threads in a dispatch in a browser; each can suspend its path.
+const THREAD_LIMIT: u32 = 1 << 18;
 
 /// Everything that the script reads, as JSON that is safe inside a `<script>` element.
 ///
@@ -36,9 +45,16 @@ pub fn live_data<'a>(stages: impl IntoIterator<Item = &'a Stage>) -> Result<Stri
         },
         "constants": {
             "workgroup_size": WORKGROUP_SIZE,
-            "aside_size": size_of::<GpuAside>(),
+            "suspended_size": size_of::<GpuSuspendedPath>(),
             "pixel_size": size_of::<PixelSum>(),
-            "turn_limit": TURN_LIMIT,
+            "iteration_limit": ITERATION_LIMIT,
+            "thread_limit": THREAD_LIMIT,
+            "dispatch_ms": DISPATCH_MS,
+            "first_paths": FIRST_PATHS,
+            "growth_limit": GROWTH_LIMIT,
+            "budget_limits": BUDGET_LIMITS,
+            "software_busy_threads": BUSY_THREADS_OF_SOFTWARE,
+            "software_threads_in_step": SOFTWARE_THREADS_IN_STEP,
         },
         "records": records::layouts().into_iter().map(record).collect::<Map<_, _>>(),
         "stages": stages.collect::<Result<Map<_, _>>>()?,
@@ -82,9 +98,9 @@ fn stage_data(stage: &Stage) -> Result<Value> {
         // The origin of the buffers' coordinates, in scene coordinates.
         "origin": exported.origin.to_array(),
         "sliders": sliders(&job, recipe.samples_per_pixel, &exported.scene_index),
-        // Loop turns over lists for one ray.
-        "turns_over_lists": exported.turns_over_lists,
-        // Most samples per block.
+        // Iterations over lists for one ray.
+        "iterations_over_lists": exported.iterations_over_lists,
+        // Maximum number of samples per block.
         "block_limit": exported.block_limit,
         "overrides": overrides.collect::<Map<_, _>>(),
         // Contents of the buffers of group 0.

@@ -61,7 +61,7 @@ impl Pending {
                 renderer.prepare(&job, &cancel.pass)?;
                 Ok((renderer, begin.elapsed()))
             });
-            // If another backend was chosen meanwhile, nobody receives this.
+            // If another backend was chosen meanwhile, there is no receiver.
             let _ = sender.send(ready);
         };
         std::thread::Builder::new().name("prepare".to_owned()).spawn(prepare).ok()?;
@@ -100,7 +100,7 @@ impl Render {
         match outcome {
             Ok((mut renderer, took)) => {
                 if let Some((_, old)) = backend
-                    && let Err(error) = self.collect(old.as_mut())
+                    && let Err(error) = self.finish_samples(old.as_mut())
                 {
                     self.status.say([error.to_string()]);
                     self.requested = self.film.samples().clone();
@@ -185,7 +185,7 @@ impl Render {
 
     fn note_prepared(&mut self, renderer: &mut dyn Renderer, took: Duration) {
         let info = renderer.info();
-        let kernel = renderer.kernel();
+        let kernel = renderer.diagnostics().kernel;
         (self.status.kernel, self.status.left_out) = (kernel.about, kernel.left_out);
         self.status.hierarchy += kernel.hierarchy_time;
         self.status.prepare += took;

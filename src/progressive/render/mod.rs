@@ -6,12 +6,13 @@ pub use backends::{Backend, dismiss, guarded};
 
 use super::shared::{Picture, Shared};
 use super::{
-    EndReason, Factory, HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, PassSizer, Phase, Plan, Status, View,
+    EndReason, Factory, HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, NoiseOf, PassSizer, Phase, Plan, Status,
+    View,
 };
 use crate::backends::BackendChoice;
 use crate::denoise;
 use crate::film::{Film, PixelSum, SampleRanges};
-use crate::job::render::{RenderError, RenderJob, Renderer, Stats};
+use crate::job::render::{Control, Outcome, RenderError, RenderJob, Renderer, Stats};
 use crate::system::clock::Instant;
 use backends::Pending;
 use std::ops::Range;
@@ -34,12 +35,21 @@ pub struct Cancel {
 impl Cancel {
     /// Ends all work for good.
     pub fn abandon(&self) {
-        self.pass.store(true, Ordering::Relaxed);
-        self.stop.store(true, Ordering::Relaxed);
+        self.pass.store(true, Ordering::SeqCst);
+        self.stop.store(true, Ordering::SeqCst);
     }
 
     fn is_abandoned(&self) -> bool {
-        self.pass.load(Ordering::Relaxed)
+        self.pass.load(Ordering::SeqCst)
+    }
+
+    /// Withdraws a request to stop that has been obeyed. It cannot erase an abandonment, which sets `pass` first: either
+    /// it sets `stop` later than this, or this sees it.
+    fn clear_stop(&self) {
+        self.stop.store(false, Ordering::SeqCst);
+        if self.is_abandoned() {
+            self.stop.store(true, Ordering::SeqCst);
+        }
     }
 }
 
@@ -105,7 +115,7 @@ impl Render {
         self.plan = plan;
         self.status.planned_samples_per_pixel = self.planned_count();
         if matches!(self.status.phase, Phase::Done(_)) {
-            self.go_on();
+            self.resume();
         }
     }
 
@@ -121,13 +131,13 @@ impl Render {
         samples.count()
     }
 
-    pub fn go_on(&mut self) {
+    pub fn resume(&mut self) {
         self.status.phase = if self.is_prepared { Phase::Tracing } else { Phase::Preparing };
     }
 
     /// Obeys a stop. On resuming, whatever the stop ended begins again.
     pub fn stop(&mut self) {
-        self.cancel.stop.store(self.cancel.is_abandoned(), Ordering::Relaxed);
+        self.cancel.clear_stop();
         if !self.status.phase.is_over() {
             self.end(EndReason::Stopped);
         }
@@ -180,7 +190,7 @@ impl Render {
 
     fn pass(&mut self, renderer: &mut dyn Renderer, is_picture_wanted: bool) -> Result<(), RenderError> {
         if self.meets_noise_target() {
-            self.collect(renderer)?;
+            self.finish_samples(renderer)?;
             // Outstanding samples can show that the estimate was too low.
             self.estimate_error();
             if self.meets_noise_target() {
@@ -192,7 +202,7 @@ impl Render {
             self.plan_first_pass(renderer)?;
         }
         let Some(mut range) = self.next_pass() else {
-            self.collect(renderer)?;
+            self.finish_samples(renderer)?;
             self.end_of_plan();
             return Ok(());
         };
@@ -201,28 +211,29 @@ impl Render {
             self.first_pass(renderer, &mut range)
         } else {
             self.add(renderer, |renderer, job, film, cancel| {
-                renderer.advance_unless(job, samples, film, &cancel.pass, &cancel.stop)
+                let control = Control { cancel: &cancel.pass, stop: &cancel.stop, may_defer: true };
+                renderer.advance(job, samples, film, &control)
             })
         };
         let took = begin.elapsed();
         log::debug!("samples {range:?} in {:.3} ms: {outcome:?}", took.as_secs_f64() * 1e3);
-        if outcome?.is_none() {
+        if outcome? == Outcome::Withdrawn {
             return Ok(());
         }
         self.sizer.measured(
             range.end - range.start,
             took,
-            self.plan.later_pass_target(renderer.heeds_stop()),
+            self.plan.later_pass_target(renderer.diagnostics().stops_early),
         );
         self.requested.insert(range)?;
         // A renderer can change during use (lose an adapter or give up threads), which it reports here.
         self.status.backend = Some(renderer.info());
         self.status.say(renderer.take_messages());
         if is_picture_wanted && self.film.sample_count() == 0 {
-            // Users wait most eagerly for the first picture.
-            self.collect(renderer)?;
+            // The first picture is the most urgent.
+            self.finish_samples(renderer)?;
         } else if is_picture_wanted {
-            guarded(self.choice.name(), || renderer.fetch())?;
+            guarded(self.choice.name(), || renderer.request_readback())?;
         }
         Ok(())
     }
@@ -233,12 +244,12 @@ impl Render {
         &mut self,
         renderer: &mut dyn Renderer,
         range: &mut Range<u64>,
-    ) -> Result<Option<Stats>, RenderError> {
+    ) -> Result<Outcome, RenderError> {
         let fewest = range.start..range.start + self.film.halves().len() as u64;
         if range.end > fewest.end {
             let samples = range.clone();
             let outcome = self.add(renderer, |renderer, job, film, cancel| {
-                renderer.advance(job, samples, film, &cancel.stop).map(Some)
+                renderer.advance(job, samples, film, &Control::deferring(&cancel.stop))
             });
             if self.cancel.is_abandoned() || !matches!(outcome, Err(RenderError::Cancelled)) {
                 return outcome;
@@ -248,11 +259,11 @@ impl Render {
             range.clone_from(&fewest);
         }
         self.add(renderer, |renderer, job, film, cancel| {
-            renderer.advance(job, range.clone(), film, &cancel.pass).map(Some)
+            renderer.advance(job, range.clone(), film, &Control::deferring(&cancel.pass))
         })
     }
 
-    /// Makes the first pass as long as the others if nobody watches and the renderer can predict its time.
+    /// Makes the first pass as long as the others in a batch render whose renderer can predict its time.
     fn plan_first_pass(&mut self, renderer: &mut dyn Renderer) -> Result<(), RenderError> {
         let Some(target) = self.plan.first_pass_target() else { return Ok(()) };
         let gap = self.requested.first_gap(self.plan.range(), u64::MAX);
@@ -261,13 +272,12 @@ impl Render {
             return Ok(());
         }
         let begin = Instant::now();
-        // A quick trial suffices if all samples fit even at a quarter of its speed.
+        // A quick estimate suffices if all samples fit even at a quarter of its speed.
         for (one_in, caution) in [(128, 4.0), (16, 1.0)] {
-            let estimate = guarded(self.choice.name(), || {
-                Ok(renderer.try_out(&mut self.film, one_in, &self.cancel.pass))
-            });
+            let estimate =
+                guarded(self.choice.name(), || Ok(renderer.estimate_sample_time(one_in, &self.cancel.pass)));
             let Some(per_sample) = estimate? else { break };
-            log::debug!("a trial of one pixel in {one_in}: {per_sample:?} or less for a sample");
+            log::debug!("estimated from one pixel in {one_in}: {per_sample:?} or less for a sample");
             self.sizer.estimated(per_sample, target);
             if caution * wanted as f64 * per_sample.as_secs_f64() <= target.as_secs_f64() {
                 break;
@@ -277,14 +287,14 @@ impl Render {
         Ok(())
     }
 
-    /// Adds the renderer's outstanding samples to the film.
-    pub fn collect(&mut self, renderer: &mut dyn Renderer) -> Result<(), RenderError> {
+    /// Adds the renderer's deferred samples to the film.
+    pub fn finish_samples(&mut self, renderer: &mut dyn Renderer) -> Result<(), RenderError> {
         if self.requested != *self.film.samples() {
-            self.add(renderer, |renderer, _, film, _| renderer.collect(film).map(Some))?;
+            self.add(renderer, |renderer, _, film, _| renderer.finish(film).map(Outcome::from))?;
         }
         if self.requested != *self.film.samples() {
             let reason = format!(
-                "it was to trace {} samples per pixel, but the film holds {}",
+                "it was asked for {} samples per pixel, but the film holds {}",
                 self.requested.count(),
                 self.film.sample_count()
             );
@@ -293,13 +303,13 @@ impl Render {
         Ok(())
     }
 
-    /// Lets the renderer add samples to the film, and records who added how many in what time. Some may have arrived
-    /// before a failure.
+    /// Lets the renderer add samples to the film, and records who added how many in what time. Even a call that fails can
+    /// have added deferred samples.
     fn add(
         &mut self,
         renderer: &mut dyn Renderer,
-        work: impl FnOnce(&mut dyn Renderer, &RenderJob, &mut Film, &Cancel) -> Result<Option<Stats>, RenderError>,
-    ) -> Result<Option<Stats>, RenderError> {
+        work: impl FnOnce(&mut dyn Renderer, &RenderJob, &mut Film, &Cancel) -> Result<Outcome, RenderError>,
+    ) -> Result<Outcome, RenderError> {
         let begin = Instant::now();
         let held = self.film.sample_count();
         let outcome = guarded(self.choice.name(), || work(renderer, &self.job, &mut self.film, &self.cancel));
@@ -307,11 +317,14 @@ impl Render {
         self.status.trace += begin.elapsed();
         let added = self.film.sample_count().saturating_sub(held);
         if added > 0 {
-            if let Ok(Some(stats)) = &outcome {
-                self.status.stats.add(stats);
-            }
-            for (info, samples) in renderer.credits(added) {
-                self.status.credit(&info, samples);
+            let (stats, credits) = match &outcome {
+                Ok(Outcome::Added { stats, credits }) => (*stats, credits.as_slice()),
+                _ => (Stats::default(), &[][..]),
+            };
+            self.status.stats.add(&stats);
+            credits.iter().for_each(|(info, samples)| self.status.credit(info, *samples));
+            if credits.is_empty() {
+                self.status.credit(&renderer.info(), added);
             }
             self.note_film();
         }
@@ -327,7 +340,7 @@ impl Render {
         }
         self.pictured_samples = Some(samples);
         let renderer = renderer.filter(|_| *view == View::Occupancy);
-        let occupancy = renderer.and_then(Renderer::tile_occupancy);
+        let occupancy = renderer.and_then(|renderer| renderer.diagnostics().tile_occupancy);
         let transfer = self.job.rules().transfer;
         // Previews are smoothed; heat maps show the film as it is.
         let is_smooth =
@@ -365,14 +378,16 @@ impl Render {
         }
     }
 
-    /// Whether the film meets the noise target, by its latest estimate.
+    /// Whether the picture that the film gives, denoised or not, meets the noise target by its latest estimate. While the
+    /// film's own error is doubtful, so is that of the denoised picture.
     fn meets_noise_target(&self) -> bool {
-        let error = self.status.error.as_ref();
+        let Some(target) = self.plan.stop.noise else { return false };
+        let film_meets = || self.film.meets(target, self.status.error.as_ref(), self.brightest());
         self.film.sample_count() >= NOISE_TARGET_FIRST_SAMPLES
-            && self.plan.stop.noise.is_some_and(|target| {
-                self.film.meets(target, error, self.brightest())
-                    || self.status.denoised.is_some_and(|error| error.upper_rmse() <= target)
-            })
+            && match self.status.denoised {
+                Some(denoised) => denoised.meets(target) && (self.status.doubt.is_none() || film_meets()),
+                None => film_meets(),
+            }
     }
 
     /// The largest radiance that a sample can have.
@@ -384,7 +399,7 @@ impl Render {
         if self.estimated_samples != self.film.sample_count() {
             let begin = Instant::now();
             self.status.error = self.film.error();
-            if self.plan.stop.is_denoised && self.plan.stop.noise.is_some() {
+            if self.plan.stop.noise_of == NoiseOf::Denoised && self.plan.stop.noise.is_some() {
                 self.status.denoised = denoise::of_film(&self.film).ok().map(|denoised| denoised.error);
             }
             self.status.doubt = self.status.error.as_ref().and_then(|error| self.film.doubt(error));
@@ -392,5 +407,27 @@ impl Render {
             self.estimate_took = begin.elapsed();
             self.estimated_at = Instant::now();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn obeyed_stop_does_not_erase_an_abandonment() {
+        for _ in 0..2000 {
+            let cancel = Cancel::default();
+            cancel.stop.store(true, Ordering::Relaxed);
+            std::thread::scope(|scope| {
+                scope.spawn(|| cancel.abandon());
+                cancel.clear_stop();
+            });
+            assert!(cancel.is_abandoned() && cancel.stop.load(Ordering::Relaxed));
+        }
+        let stopped = Cancel::default();
+        stopped.stop.store(true, Ordering::Relaxed);
+        stopped.clear_stop();
+        assert!(!stopped.stop.load(Ordering::Relaxed));
     }
 }

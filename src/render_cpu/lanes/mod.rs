@@ -114,13 +114,13 @@ pub trait Key: Copy + Select<Self::Mask> {
     fn eq(self, other: Self) -> Self::Mask;
 }
 
-/// Whether there are so many lanes that several are usually done with their blocks of samples at the same time.
+/// Whether a packet has enough lanes that several usually finish their blocks of samples at the same time.
 pub const fn is_wide<L: Lanes>() -> bool {
     L::WIDTH >= 8
 }
 
-/// Whether work that only the lanes in `m` need can be left out. With one lane, a jump costs less than needless work; with
-/// several, some lane nearly always needs it, and only a width of one is asked for.
+/// Whether work that only the lanes in `m` need can be skipped. With one lane, a jump costs less than needless work; with
+/// several, some lane nearly always needs it, so the work is never skipped.
 #[inline(always)]
 pub fn is_idle<L: Lanes>(m: L::M) -> bool {
     L::WIDTH == 1 && m.bits() == 0

@@ -1,6 +1,6 @@
 //! The random numbers of a path.
 
-use super::Packet;
+use super::packet::Packet;
 use crate::kernel::parts;
 use crate::prepared::PreparedScene;
 use crate::render_cpu::broadcast::BroadcastScene;
@@ -25,8 +25,9 @@ pub(super) fn draw<L: Lanes, const PARTS: u32>(
     to: &mut Draw<L>,
 ) {
     let with_lens = has_lens::<L, PARTS>(prepared);
-    let (pixel, settings) = (packet.blocks.pixel, &prepared.settings);
-    let [first, second] = numbers(l, settings, pixel, packet.blocks.counter, packet.stream, with_lens);
+    let (blocks, settings) = (&packet.blocks, &prepared.settings);
+    let [first, second] =
+        numbers(l, settings, blocks.pixel, blocks.counter, blocks.key, packet.stream, with_lens);
     let unit = |u: [L::U; 2]| [unit_float(l, u[0]), unit_float(l, u[1])];
     to.pair = unit(first);
     if with_lens {

@@ -1,9 +1,12 @@
 //! One path, ray by ray, traced by the packets' code.
 
-use super::{Collected, Packet, intersect, parts, shade};
+use super::intersect::intersect;
+use super::packet::Packet;
+use super::schedule::continue_paths;
+use super::shade::Shaded;
 use crate::film::PixelSum;
 use crate::kernel::path_record::{PathRecord, RecordedHit, RecordedRay};
-use crate::kernel::{NONE, Real};
+use crate::kernel::{NONE, Real, parts};
 use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::bvh::EMPTY_STACK;
 use crate::render_cpu::lanes::{Lanes, Mask, V3, Wide, WideU};
@@ -24,16 +27,23 @@ pub fn record<L: Lanes>(
     let rows = sums.iter_mut().map(std::slice::from_mut).collect();
     let order = RefillOrder::new(1, 1);
     let mut work = Work::new(&blocks, &order, pixel, rows);
-    let (mut packets, mut collected) = ([Packet::idle(l)], [Collected::nothing(l)]);
+    let (mut packets, mut shaded) = ([Packet::idle(l)], [Shaded::nothing(l)]);
     let (mut stack, mut stats) = (EMPTY_STACK, TileStats::default());
     let in_scene = |position: V3<L::F>| (DVec3::from(vector::<L>(position)) + prepared.origin).to_array();
     let mut rays: Vec<RecordedRay> = Vec::new();
     loop {
-        shade::<L, { parts::ALL }>(l, broadcast, &mut packets, &mut collected, &mut work, true, &mut stats);
+        continue_paths::<L, { parts::ALL }>(
+            l,
+            broadcast,
+            &mut packets,
+            &mut shaded,
+            &mut work,
+            true,
+            &mut stats,
+        );
         let packet = &mut packets[0];
         // The last step of an absorbed path would add nothing.
-        let goes_on = packet.busy != 0 && packet.absorbed.bits() == 0;
-        if !goes_on {
+        if packet.busy == 0 || packet.absorbed.bits() != 0 {
             break;
         }
         if let Some(hit) = rays.last_mut().and_then(|ray| ray.hit.as_mut()) {

@@ -1,25 +1,25 @@
 //! The shading records of the spheres that were hit.
 
-use super::{Packet, is_small};
-use crate::kernel::{ANCHORED_GROUP, Columns, GROUP, NONE, RECORD_COLUMNS, parts};
+use super::packet::{Packet, is_small};
+use crate::kernel::{ANCHORED_GROUP, Columns, GROUP, LoadShading, NONE, RECORD_COLUMNS};
 use crate::prepared::PreparedScene;
 use crate::render_cpu::broadcast::BroadcastScene;
-use crate::render_cpu::lanes::{Lanes, Unsigned, V3, rows_of};
+use crate::render_cpu::lanes::{Float, Lanes, Unsigned, V3, rows_of};
 
 /// Column groups of a record.
 const GROUPS: usize = RECORD_COLUMNS / GROUP;
 
-/// The record of the sphere that each lane has hit. Fields are loaded by name: [`crate::kernel::LoadShading`].
-pub(super) struct HitRecords<L: Lanes> {
+/// The [`crate::kernel::ShadingRecord`] of the sphere that each lane has hit. Fields are loaded by name: [`LoadShading`].
+pub(super) struct ShadingRecords<L: Lanes> {
     groups: [[L::F; GROUP]; GROUPS],
 }
 
-impl<L: Lanes> HitRecords<L> {
+impl<L: Lanes> ShadingRecords<L> {
     /// Loads the records. A lane without a hit gets an arbitrary record.
     #[inline(always)]
     pub fn load<const PARTS: u32>(l: L, broadcast: &BroadcastScene<L::Real>, packet: &Packet<L>) -> Self {
         let (prepared, hit) = (&broadcast.prepared, packet.nearest.sphere);
-        let with_anchored = PARTS & parts::EXTREMES != 0 && prepared.features.anchored;
+        let with_anchored = prepared.features.in_kernel::<PARTS>().anchored();
         let is_needed = |group: usize| group != ANCHORED_GROUP || with_anchored;
         let mut groups = [[l.constant(0.0); GROUP]; GROUPS];
         if is_permuted::<L, PARTS>(prepared) {
@@ -46,7 +46,19 @@ impl<L: Lanes> HitRecords<L> {
                 groups[3] = l.gather(&rows, 3);
             }
         }
-        HitRecords { groups }
+        ShadingRecords { groups }
+    }
+
+    /// Lanes whose sphere is anchored.
+    #[inline(always)]
+    pub fn is_anchored(&self, l: L) -> L::M {
+        l.constant(0.0).lt(self.anchoring())
+    }
+
+    /// Lanes whose sphere encloses every ray.
+    #[inline(always)]
+    pub fn is_cavity(&self, l: L) -> L::M {
+        l.constant(1.0).lt(self.anchoring())
     }
 }
 
@@ -59,7 +71,7 @@ pub(super) fn is_permuted<L: Lanes, const PARTS: u32>(prepared: &PreparedScene<L
     !is_small::<L, PARTS>() && prepared.records.len() <= L::PERMUTED_ROWS
 }
 
-impl<L: Lanes> Columns<L::Real> for HitRecords<L> {
+impl<L: Lanes> Columns<L::Real> for ShadingRecords<L> {
     type Number = L::F;
     type Vector = V3<L::F>;
 

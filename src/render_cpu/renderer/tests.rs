@@ -20,7 +20,7 @@ fn film(renderer: &mut CpuRenderer, job: &RenderJob) -> Film {
 }
 
 #[test]
-fn a_hierarchy_outlives_the_move_of_a_camera_and_gives_the_same_film() {
+fn camera_move_keeps_hierarchy_and_film() {
     let first = small("field:200");
     let mut moved = *first.camera();
     moved.look_from += DVec3::new(0.5, 0.25, -1.0);
@@ -32,12 +32,12 @@ fn a_hierarchy_outlives_the_move_of_a_camera_and_gives_the_same_film() {
     inside.look_from = scene.spheres.iter().find(is_small_and_opaque).expect("one").center;
     let mut renderer = CpuRenderer::new(CpuOptions::default()).expect("available");
     film(&mut renderer, &first);
-    assert_ne!(renderer.kernel().hierarchy_time, Duration::ZERO);
+    assert_ne!(renderer.diagnostics().kernel.hierarchy_time, Duration::ZERO);
     // Inside an opaque ball nothing else is visible, so there is nothing to build.
     for (camera, is_kept) in [(moved, true), (inside, true), (moved, false), (*first.camera(), true)] {
         let job = first.seen_by(camera, *first.settings()).expect("valid");
         let again = film(&mut renderer, &job);
-        assert_eq!(renderer.kernel().hierarchy_time == Duration::ZERO, is_kept, "{camera:?}");
+        assert_eq!(renderer.diagnostics().kernel.hierarchy_time == Duration::ZERO, is_kept, "{camera:?}");
         let mut fresh = CpuRenderer::new(CpuOptions::default()).expect("available");
         assert!(again == film(&mut fresh, &job), "{camera:?}");
     }
@@ -52,34 +52,28 @@ fn the_tiles_add_up_to_the_picture() {
     for range in [0..2, 2..4] {
         stats.add(&renderer.accumulate(&job, range, &mut film, &AtomicBool::new(false)).expect("traced"));
     }
-    let occupancy = renderer.tile_occupancy().expect("packets");
+    let occupancy = renderer.diagnostics().tile_occupancy.expect("packets");
     let sum = |which: usize| occupancy.tiles.iter().map(|tile| tile[which]).sum::<u64>();
     assert_eq!([sum(0), sum(1)], [stats.busy_lanes, stats.offered_lanes]);
     assert!(occupancy.share_at([19, 11]).is_some_and(|share| share > 0.0 && share <= 1.0));
     assert_eq!(occupancy.share_at([0, 4000]), None);
     renderer.prepare(&small("metals"), &AtomicBool::new(false)).expect("prepared");
-    assert!(renderer.tile_occupancy().expect("packets").tiles.is_empty());
-    assert_eq!(CpuRenderer::reference(Some(1)).expect("available").tile_occupancy(), None);
+    assert!(renderer.diagnostics().tile_occupancy.expect("packets").tiles.is_empty());
+    assert_eq!(CpuRenderer::reference(Some(1)).expect("available").diagnostics().tile_occupancy, None);
 }
 
 #[test]
-fn a_trial_tells_a_time_and_adds_nothing() {
+fn sample_time_is_estimated_for_a_prepared_job() {
     let (job, never) = (small("three-spheres"), AtomicBool::new(false));
     let mut renderer = CpuRenderer::new(CpuOptions::default()).expect("available");
-    let mut film = job.new_film();
-    assert_eq!(renderer.try_out(&mut film, 16, &never), None, "nothing is prepared");
+    assert_eq!(renderer.estimate_sample_time(16, &never), None, "nothing is prepared");
     renderer.prepare(&job, &never).expect("prepared");
-    assert!(renderer.try_out(&mut film, 16, &never).is_some_and(|time| time > Duration::ZERO));
-    assert_eq!(renderer.try_out(&mut film, 16, &AtomicBool::new(true)), None, "it was cancelled");
-    assert!(film == job.new_film());
-    renderer.accumulate(&job, 0..4, &mut film, &never).expect("traced");
-    let before = film.clone();
-    assert!(renderer.try_out(&mut film, 16, &never).is_some());
-    assert!(film == before);
+    assert!(renderer.estimate_sample_time(16, &never).is_some_and(|time| time > Duration::ZERO));
+    assert_eq!(renderer.estimate_sample_time(16, &AtomicBool::new(true)), None, "it was cancelled");
 }
 
 #[test]
-fn a_stop_leaves_the_film_with_a_whole_pass_or_without_it() {
+fn stopped_pass_is_whole_or_withdrawn() {
     let mut recipe = Recipe::find("three-spheres").expect("a built-in scene");
     (recipe.settings.width, recipe.settings.height) = (256, 144);
     let (job, never) = (recipe.job().expect("valid"), AtomicBool::new(false));
@@ -98,16 +92,18 @@ fn a_stop_leaves_the_film_with_a_whole_pass_or_without_it() {
                 std::thread::sleep(eighths * pass / 8);
                 stop.store(true, Ordering::Relaxed);
             });
-            renderer.advance_unless(&job, 4..68, &mut film, &never, &stop).expect("no failure")
+            let control = Control { stop: &stop, ..Control::new(&never) };
+            renderer.advance(&job, 4..68, &mut film, &control).expect("no failure")
         });
-        assert!(film == if outcome.is_some() { whole.clone() } else { held.clone() }, "{eighths} eighths");
-        assert!(eighths > 0 || outcome.is_none(), "it was to be given up");
+        let is_withdrawn = outcome == Outcome::Withdrawn;
+        assert!(film == if is_withdrawn { held.clone() } else { whole.clone() }, "{eighths} eighths");
+        assert!(eighths > 0 || is_withdrawn, "it was to be given up");
     }
 }
 
 #[cfg(target_os = "linux")]
 #[test]
-fn threads_of_low_priority_give_way() {
+fn low_priority_threads_are_nicer() {
     let niceness = |low_priority| {
         let options = CpuOptions { threads: Some(1), low_priority, ..CpuOptions::default() };
         CpuRenderer::new(options).unwrap().threads.install(|| {

@@ -5,7 +5,7 @@
 
 mod panic;
 
-pub use panic::{watched, write_report};
+pub use panic::{expect_panics, watched, write_report};
 
 use crate::system::console;
 use anyhow::{Context, Result, anyhow};

@@ -11,10 +11,20 @@ use std::env;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// Version, commit and target in one line, for the report.
 static VERSION: OnceLock<String> = OnceLock::new();
+
+/// Whether a panic on the main thread would be another program's fault, and is reported by whoever catches it.
+static IS_EXPECTED: AtomicBool = AtomicBool::new(false);
+
+/// Sets whether a panic on the main thread is only logged, because it is caught and reported in other words. Returns the
+/// value before.
+pub fn expect_panics(is_expected: bool) -> bool {
+    IS_EXPECTED.swap(is_expected, Ordering::SeqCst)
+}
 
 /// Message of the latest panic on any thread.
 static LATEST: Mutex<Option<String>> = Mutex::new(None);
@@ -65,6 +75,9 @@ fn note(panic: &PanicHookInfo<'_>) {
     let thread = thread.name().unwrap_or("(unnamed)");
     let message = format!("internal error in thread {thread}: {reason}{place}");
     log::error!("{message}");
+    if thread == "main" && IS_EXPECTED.load(Ordering::SeqCst) {
+        return;
+    }
     console::note(&format!("{message}; please report it with the command that led to it"));
     let backtrace = Backtrace::capture();
     let mut whole = message;

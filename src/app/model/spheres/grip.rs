@@ -1,4 +1,4 @@
-//! What a drag does to a sphere, and where a new sphere goes.
+//! Drags of spheres, and the place of a new sphere.
 
 use crate::app::model::Body;
 use crate::scene::{Camera, Material, Pick};
@@ -11,13 +11,13 @@ const RADIUS_SHARE_LIMIT: f64 = 0.95;
 /// A sphere never becomes smaller than this share of that distance.
 const RADIUS_SHARE_LEAST: f64 = 1e-4;
 
-/// A drag moves a sphere at most to so many times its distance from the eye.
+/// A drag moves a sphere to at most this many times its distance from the eye.
 const FAR: f64 = 8.0;
 
 /// The radius of a new sphere as a share of the picture's height at its distance.
 const NEW_SHARE: f64 = 0.09;
 
-/// What a drag changes.
+/// The quantity that a drag changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Grip {
     /// Its place, on the plane through the centre that is parallel to the picture.
@@ -31,7 +31,7 @@ pub enum Grip {
 /// A sphere that the user holds.
 #[derive(Clone, Copy, Debug)]
 pub struct Held {
-    /// What the drag changes.
+    /// The quantity that the drag changes.
     pub grip: Grip,
     /// The sphere.
     pub sphere: usize,

@@ -14,7 +14,7 @@ const SKY_LENGTH: f64 = 2.0;
 /// Parts closer to the camera than this share of the view distance are not drawn.
 const NEAR_SHARE: f64 = 1e-4;
 
-/// So many of the other paths are drawn, faintly.
+/// Maximum number of other paths, which are drawn faintly.
 const FAINT: usize = 16;
 
 impl Paths {

@@ -2,7 +2,7 @@
 // overwrites them with its results.
 
 fn f(base: u32, i: u32) -> f32 {
-    return bitcast<f32>(words[base + i]);
+    return bitcast<f32>(scratch[base + i]);
 }
 
 fn v3(base: u32, i: u32) -> vec3f {
@@ -10,7 +10,7 @@ fn v3(base: u32, i: u32) -> vec3f {
 }
 
 fn put(base: u32, i: u32, x: f32) {
-    words[base + i] = bitcast<u32>(x);
+    scratch[base + i] = bitcast<u32>(x);
 }
 
 fn put3(base: u32, i: u32, v: vec3f) {
@@ -20,36 +20,35 @@ fn put3(base: u32, i: u32, v: vec3f) {
 }
 
 fn probe_ray(base: u32) -> Ray {
-    return Ray(v3(base, 0u), v3(base, 3u), words[base + 6u], words[base + 7u]);
+    return Ray(v3(base, 0u), v3(base, 3u), scratch[base + 6u], scratch[base + 7u]);
 }
 
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn probe(@builtin(global_invocation_id) id: vec3u) {
     let base = id.x * PROBE_STRIDE;
-    if base + PROBE_STRIDE > arrayLength(&words) {
+    if base + PROBE_STRIDE > arrayLength(&scratch) {
         return;
     }
     switch PROBE {
         case PROBE_PCG4D: {
-            let v = pcg4d(vec4u(words[base], words[base + 1u], words[base + 2u], words[base + 3u]));
-            words[base] = v.x;
-            words[base + 1u] = v.y;
-            words[base + 2u] = v.z;
-            words[base + 3u] = v.w;
+            let v = pcg4d(vec4u(scratch[base], scratch[base + 1u], scratch[base + 2u], scratch[base + 3u]));
+            scratch[base] = v.x;
+            scratch[base + 1u] = v.y;
+            scratch[base + 2u] = v.z;
+            scratch[base + 3u] = v.w;
         }
         case PROBE_SOBOL: {
-            let key = pixel_key(words[base], words[base + 1u], words[base + 2u]);
-            let counter = words[base + 3u];
-            let bounce = words[base + 4u];
-            let first = sobol_pair(counter, stream_of(key, bounce));
-            let second = sobol_pair(counter, lens_stream_of(key, bounce));
-            words[base] = first.x;
-            words[base + 1u] = first.y;
-            words[base + 2u] = second.x;
-            words[base + 3u] = second.y;
+            let key = pixel_key(scratch[base], scratch[base + 1u], scratch[base + 2u]);
+            let counter = scratch[base + 3u];
+            let bounce = scratch[base + 4u];
+            let drawn = numbers(scratch[base], scratch[base + 2u], counter, key, bounce, true);
+            scratch[base] = drawn.x;
+            scratch[base + 1u] = drawn.y;
+            scratch[base + 2u] = drawn.z;
+            scratch[base + 3u] = drawn.w;
         }
         case PROBE_SIN_COS: {
-            let u = unit_float(words[base]);
+            let u = unit_float(scratch[base]);
             let sine_cosine = sin_cos_turns(u);
             put(base, 0u, u);
             put(base, 1u, sine_cosine.x);
@@ -58,21 +57,21 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
         case PROBE_ROOTS: {
             let ray = probe_ray(base);
             let sphere = vec4f(v3(base, 8u), f(base, 11u));
-            words[base] = near_root(ray, sphere, 1u);
-            words[base + 1u] = nearest_root(ray, sphere, 1u);
-            words[base + 2u] = book_root(ray, sphere, f(base, 14u));
+            scratch[base] = near_root(ray, sphere, 1u);
+            scratch[base + 1u] = nearest_root(ray, sphere, 1u);
+            scratch[base + 2u] = book_root(ray, sphere, f(base, 14u));
             // As `traverse` does: the chord of a ray inside, and the other spheres.
             let start = select(ray.left, 1u, ray.inside == 1u);
-            words[base + 3u] = select(signed_root(ray, sphere, 1u, start), chord_end(ray, sphere), ray.inside == 1u);
-            words[base + 4u] = signed_root(ray, vec4f(sphere.xyz, -sphere.w), 1u, ray.left);
+            scratch[base + 3u] = select(signed_root(ray, sphere, 1u, start), chord_end(ray, sphere), ray.inside == 1u);
+            scratch[base + 4u] = signed_root(ray, vec4f(sphere.xyz, -sphere.w), 1u, ray.left);
         }
         case PROBE_ANCHORED: {
             let ray = probe_ray(base);
-            let sphere = AnchoredSphere(v3(base, 8u), f(base, 11u), v3(base, 12u), words[base + 3u] % 3u);
+            let sphere = AnchoredSphere(v3(base, 8u), f(base, 11u), v3(base, 12u), scratch[base + 3u] % 3u);
             let key = anchored_root(ray, sphere, 1u);
             let t = f(base, 15u);
             let point = anchored_surface_point(ray, t, sphere.anchor, sphere.inward, sphere.curvature);
-            words[base] = key;
+            scratch[base] = key;
             put3(base, 1u, point.position);
             put3(base, 4u, point.outward);
         }
@@ -91,15 +90,15 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
             record.refraction_index = f(base, 1u);
             record.inverse_index = f(base, 2u);
             record.f0 = f(base, 3u);
-            let surface = surface_of(record);
-            let front = words[base + 14u] != 0u;
+            let material = material_of(record);
+            let front_face = scratch[base + 14u] != 0u;
             let incidence = incidence_of(f(base, 13u));
             let coin = f(base, 15u);
-            let sent = scatter(surface, v3(base, 4u), v3(base, 7u), incidence, front, v3(base, 10u), coin);
+            let scattered = scatter(material, v3(base, 4u), v3(base, 7u), incidence, front_face, v3(base, 10u), coin);
             let share = reflectance(incidence.cosine, f(base, 3u));
-            let through = refracted(v3(base, 4u), v3(base, 7u), sent.ratio, incidence.sine2);
-            put3(base, 0u, sent.direction);
-            words[base + 3u] = select(0u, 1u, sent.refracts) | select(0u, 2u, sent.is_metal);
+            let through = refracted(v3(base, 4u), v3(base, 7u), scattered.ratio, incidence.sine2);
+            put3(base, 0u, scattered.direction);
+            scratch[base + 3u] = select(0u, 1u, scattered.refracts) | select(0u, 2u, scattered.is_metal);
             put(base, 4u, share);
             put3(base, 5u, through);
         }
@@ -115,13 +114,13 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
             put3(base, 9u, lens.direction);
         }
         case PROBE_FIXED_POINT: {
-            words[base] = fixed_point(f(base, 0u));
+            scratch[base] = fixed_point(f(base, 0u));
         }
         case PROBE_INCIDENCE: {
             let by_cosine = incidence_of(f(base, 0u));
             let by_sine2 = incidence_of_sine2(f(base, 1u));
             let sent = hemisphere(v3(base, 2u), v3(base, 5u));
-            let reflectance = strip_reflectance(words[base + 8u]);
+            let reflectance = strip_reflectance(scratch[base + 8u]);
             put(base, 0u, by_cosine.cosine);
             put(base, 1u, by_cosine.sine2);
             put(base, 2u, by_sine2.cosine);
@@ -136,7 +135,7 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
             let high = fma(v3(base, 11u), slope.inverse, -slabs.high);
             let near = select(low, high, slope.backward);
             let far = select(high, low, slope.backward);
-            words[base] = hit_bits(
+            scratch[base] = hit_bits(
                 vec4f(near.x), vec4f(near.y), vec4f(near.z), vec4f(far.x), vec4f(far.y), vec4f(far.z),
                 f(base, 14u), vec4u(1u, 2u, 4u, 8u),
             );
