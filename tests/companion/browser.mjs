@@ -143,10 +143,11 @@ const shown = (link, isAsLinked) => link.evaluate(async (link, isAsLinked) => {
   if (!isAboutSamples) settings.samples = Math.min(settings.samples, live.stage.width > 500 ? 1 : 4);
   live.session.change(false);
   const isDone = () => {
-    const { session: { film, isStale }, stage, told } = live;
+    const { session, stage, told } = live, { film, isStale } = session ?? {};
     return film && !isStale && film.width === stage.width && told.textContent.startsWith(`${settings.samples} of`);
   };
-  for (let i = 0; i < 1200 && !isDone(); i++) await new Promise((passed) => setTimeout(passed, 50));
+  for (let i = 0; i < 1200 && live.session && !isDone(); i++) await new Promise((passed) => setTimeout(passed, 50));
+  if (!isDone()) throw new Error(`${link.dataset.stage} was not rendered: ${live.said.textContent}`);
   const canvas = new OffscreenCanvas(480, Math.round((480 * live.stage.height) / live.stage.width)), context = canvas.getContext("2d");
   context.drawImage(live.canvas, 0, 0, canvas.width, canvas.height);
   const data = [...context.getImageData(0, 0, canvas.width, canvas.height).data];
