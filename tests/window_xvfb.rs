@@ -25,7 +25,7 @@ fn are_there(programs: &[&str], consequence: &str) -> bool {
     if missing.is_empty() {
         return true;
     }
-    skip("GPU", &format!("{consequence}: {} is not installed", missing.join(" and ")));
+    skip("GPU", &format!("{consequence}: missing: {}", missing.join(", ")));
     false
 }
 

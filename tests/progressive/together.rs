@@ -3,13 +3,24 @@
 use super::common::{Fake, PATIENCE, expected, forgetful, job, scripted, spoiling};
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
-use std::sync::mpsc::channel;
+use std::sync::mpsc::{Receiver, channel};
 use weekender::backends::Together;
 use weekender::film::Film;
 use weekender::job::render::{BackendInfo, Control, Outcome, RenderError, Renderer, Stats};
 
 fn fake(name: &'static str, fails_at: Option<u64>) -> Box<dyn Renderer> {
     Box::new(Fake { fails_at, ..Fake::new(name) })
+}
+
+/// Traces nothing before it has received a signal.
+fn waiting(name: &'static str, signal: Receiver<()>) -> Box<dyn Renderer> {
+    let mut signal = Some(signal);
+    scripted(name, move |fake, range, film, cancel| {
+        if let Some(signal) = signal.take() {
+            signal.recv_timeout(PATIENCE).unwrap();
+        }
+        fake.accumulate(&job(2), range, film, cancel)
+    })
 }
 
 /// Adds samples to a film. Returns the statistics, and who added how many of them.
@@ -59,7 +70,14 @@ fn a_member_that_fails_leaves_its_samples_to_the_others() {
         Box::new(Fake { panics_at: Some(0), ..Fake::new("gpu") }),
         scripted("gpu", |_, _, _, _| Ok(Stats::default())),
     ] {
-        let mut together = Together::new(vec![fake("cpu", None), broken]);
+        // The other one begins only once it has failed.
+        let (called, is_called) = channel();
+        let mut broken = broken;
+        let gpu = scripted("gpu", move |_, range, film, cancel| {
+            called.send(()).unwrap();
+            broken.accumulate(&job(2), range, film, cancel)
+        });
+        let mut together = Together::new(vec![waiting("cpu", is_called), gpu]);
         let (film, credits) = rendered(&mut together);
         assert!(film == expected(64));
         assert_eq!(credits, [("cpu", 64)]);
@@ -76,13 +94,7 @@ fn a_member_that_fails_leaves_its_samples_to_the_others() {
 fn spoiling_member_leaves_its_samples_to_the_others() {
     let (spoilt, is_spoilt) = channel();
     // The other member takes the rest only once the film is spoilt.
-    let mut signal = Some(is_spoilt);
-    let cpu = scripted("cpu", move |fake, range, film, cancel| {
-        if let Some(signal) = signal.take() {
-            signal.recv_timeout(PATIENCE).unwrap();
-        }
-        fake.accumulate(&job(2), range, film, cancel)
-    });
+    let cpu = waiting("cpu", is_spoilt);
     let gpu = spoiling("gpu", move || spoilt.send(()).unwrap());
     let (film, credits) = rendered(&mut Together::new(vec![cpu, gpu]));
     assert!(film == expected(64));
