@@ -115,8 +115,7 @@ impl ReportOptions {
     /// # Errors
     /// If one is unknown, too large or named twice.
     pub fn scenes(&self) -> Result<Vec<Recipe>> {
-        let mut scenes: Vec<Recipe> =
-            self.scenes.iter().map(|name| sources::scene(name)).collect::<Result<_>>()?;
+        let mut scenes: Vec<Recipe> = self.scenes.iter().map(sources::scene).collect::<Result<_>>()?;
         for index in 0..scenes.len() {
             let name = scenes[index].name.clone();
             ensure!(

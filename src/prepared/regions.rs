@@ -88,6 +88,7 @@ impl<T: Send> Forest<T> {
 }
 
 /// The places of the spheres along a curve, and the ranges of it that are regions.
+#[expect(clippy::single_range_in_vec_init, reason = "a list of one range is meant")]
 fn divided(spheres: &[Bounded<'_>], effort: Effort, method: Method) -> (Vec<u32>, Vec<Range<usize>>) {
     let count = spheres.len();
     if count < parted::FEW_SPHERES {

@@ -85,7 +85,7 @@ mod tests {
         let line = Shell::Posix.line([OsStr::new("printf"), OsStr::new("%s"), word]);
         match std::process::Command::new("bash").args(["-c", &line]).output() {
             Ok(output) => assert_eq!(output.stdout, word.as_bytes(), "{line}"),
-            Err(error) => eprintln!("bash was not run: {error}"),
+            Err(error) => crate::system::console::note(&format!("bash was not run: {error}")),
         }
     }
 
