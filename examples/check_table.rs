@@ -1,5 +1,5 @@
 //! Prints the table of docs/check.md: mistakes are planted into a plain implementation of the book that shares no code
-//! with Weekender, at 400x225 and 100 samples in 8 bits, and `weekender check` is asked what is wrong, with `--stage` and
+//! with Weekender, at 240x135 and 80 samples in 8 bits, and `weekender check` is asked what is wrong, with `--stage` and
 //! without.
 //!
 //! `cargo run --release --example check_table [MISTAKE...]`; the mistake `right` stands for correct pictures.
@@ -77,10 +77,10 @@ const OTHERS: [(&str, &str); 6] = [
     ("same-seed", "hollow-glass"),
 ];
 
-const SIZE: [u32; 2] = [400, 225];
+const SIZE: [u32; 2] = [240, 135];
 
 /// Random numbers of the planted pictures.
-const SEEDS: [u64; 2] = [1, 2];
+const SEEDS: [u64; 1] = [1];
 
 fn main() -> anyhow::Result<()> {
     let wanted: Vec<String> = std::env::args().skip(1).collect();
@@ -90,7 +90,7 @@ fn main() -> anyhow::Result<()> {
     for (mistake, stage) in PLANTED.into_iter().chain(OTHERS).filter(|(mistake, _)| is_wanted(mistake)) {
         let mut others = [Vec::new(), Vec::new()];
         for seed in SEEDS {
-            let mine = planted(stage, mistake, 100, seed);
+            let mine = planted(stage, mistake, 80, seed);
             all += 1;
             for (way, given) in [Some(stage), None].into_iter().enumerate() {
                 let (found, took) = found(&mine, given, mistake)?;
@@ -119,7 +119,7 @@ fn main() -> anyhow::Result<()> {
 
     let (mut wrong, mut pictures) = (Vec::new(), 0);
     for stage in book::STAGES {
-        for (samples, seed) in [(10, 11), (10, 12), (100, 13)] {
+        for (samples, seed) in [(4, 11), (10, 12), (80, 13)] {
             let mine = planted(stage, "", samples, seed);
             pictures += 1;
             for given in [Some(stage), None] {
@@ -148,11 +148,12 @@ fn found(mine: &Mine, stage: Option<&str>, planted: &str) -> anyhow::Result<(Str
     let begin = Instant::now();
     let finding = judge(mine, stage.map(Stage::find).transpose()?, |_| {})?;
     let seconds = begin.elapsed().as_secs_f64();
-    if finding.alike.is_some_and(|alike| alike.id == planted) {
+    if finding.alike.iter().any(|alike| alike.id == planted) {
         return Ok((planted.to_owned(), seconds));
     }
     let found = match finding.named() {
-        Some(mistake) => mistake.id.to_owned(),
+        Some(mistake) if finding.is_sure => mistake.id.to_owned(),
+        Some(mistake) => format!("{}?", mistake.id),
         None if finding.is_right() => "right".to_owned(),
         None => "unknown".to_owned(),
     };

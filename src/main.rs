@@ -15,12 +15,10 @@ use weekender::system::{interrupt, journal};
 #[cfg(has_repository)]
 const COMMIT: &str = git_version::git_version!(
     args = ["--always", "--dirty=+", "--abbrev=12", "--exclude=*"],
-    fallback = UNKNOWN
+    fallback = "commit unknown"
 );
 #[cfg(not(has_repository))]
-const COMMIT: &str = UNKNOWN;
-
-const UNKNOWN: &str = "commit unknown";
+const COMMIT: &str = "commit unknown";
 
 /// Version, commit (with a `+` if files were changed) and target.
 fn build() -> String {

@@ -137,3 +137,30 @@ fn example_scene_survives_its_file() {
     assert_eq!((&read.scene, read.camera, read.settings), (&recipe.scene, recipe.camera, recipe.settings));
     assert!(image::open(directory.path().join("spiral.png")).is_ok());
 }
+
+#[test]
+fn the_package_has_what_its_readme_links_to() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let [readme, manifest] =
+        ["README.md", "Cargo.toml"].map(|name| fs::read_to_string(root.join(name)).unwrap());
+    let links = readme.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next());
+    let links: BTreeSet<&str> = links.filter(|link| !link.is_empty() && !link.contains("://")).collect();
+    assert!(links.len() > 10, "{links:?}");
+    for link in links {
+        let folder = Path::new(link).parent().unwrap().to_str().unwrap();
+        let slash = if folder.is_empty() { "" } else { "/" };
+        let place = format!("\", \"usr/share/doc/weekender/{folder}{slash}\"");
+        let ending =
+            Path::new(link).extension().map_or("*".to_owned(), |ending| format!("*.{}", ending.display()));
+        let whole = format!("usr/share/doc/weekender/{link}/\"");
+        let sources = [link.to_owned(), format!("{folder}/{ending}"), format!("{folder}/*")];
+        let is_packed = sources.iter().any(|source| manifest.contains(&format!("[\"{source}{place}")));
+        assert!(is_packed || manifest.contains(&whole), "{link} is not in the package");
+    }
+}
+
+#[test]
+fn an_old_cargo_can_read_the_manifest_and_then_says_that_it_is_too_old() {
+    let manifest = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml")).unwrap();
+    assert!(!manifest.contains("line-tables-only"), "cargo 1.65 takes only numbers");
+}

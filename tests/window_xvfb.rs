@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use weekender::app::Device;
+use weekender::cli::{self, Request, WindowOptions};
 use weekender::film::checkpoint;
 use weekender::job::output::read_description;
 
@@ -346,10 +347,11 @@ fn a_killed_window_loses_little_and_a_terminated_one_nothing() {
     first.wait().unwrap();
     let samples = samples_in(&film);
 
-    // The next window offers it, and opens it only when asked.
-    let mut second = display.weekender(home.path()).args(often).spawn().unwrap();
+    // A window with another picture keeps it until the user has answered.
+    let other = ["--stage", "metal", "--size", "32x18"];
+    let mut second = display.weekender(home.path()).args(other).args(often).spawn().unwrap();
     display.wait_for_window(&mut second);
-    let left = film.with_file_name("recovered.exr");
+    let left = film.with_file_name("recovered-1.exr");
     wait_for_file(&left);
     std::thread::sleep(Duration::from_secs(2));
     assert_eq!(samples_in(&left), samples);
@@ -381,6 +383,55 @@ fn a_killed_window_loses_little_and_a_terminated_one_nothing() {
     let output = display.weekender(home.path()).args(batch).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(film == checkpoint::load(&whole).unwrap().film);
+}
+
+/// Spheres of the picture with which a window goes on after one that had this state directory.
+fn spheres_after(state: &Path) -> usize {
+    let copy = tempfile::tempdir().unwrap();
+    for entry in std::fs::read_dir(state).unwrap() {
+        let path = entry.unwrap().path();
+        std::fs::copy(&path, copy.path().join(path.file_name().unwrap())).unwrap();
+    }
+    let Request::Window(options) = cli::parse(["weekender".into()]).unwrap() else { panic!("no window") };
+    let state_directory = Some(copy.path().to_owned());
+    let window = weekender::app::Window::new(WindowOptions { state_directory, ..*options }).unwrap();
+    window.model.document.scene().spheres.len()
+}
+
+/// At ten moments of editing, rendering and saving.
+#[test]
+fn a_killed_window_comes_back_with_what_was_edited() {
+    let Some(display) = Display::start() else { return };
+    let home = tempfile::tempdir().unwrap();
+    let state = home.path().join("state/weekender");
+    let film = autosave(home.path());
+    let mut before = None;
+    for round in 0..10_u64 {
+        let log = Log(home.path().join(format!("frames {round}.csv")));
+        let mut command = display.weekender(home.path());
+        command.args(["--device", "cpu", "--autosave-every", "0.2s", "--frame-log"]).arg(&log.0);
+        if before.is_none() {
+            command.args(["--stage", "metal", "--size", "240x135"]);
+        }
+        let mut child = command.spawn().unwrap();
+        let id = display.wait_for_window(&mut child);
+        log.wait_for_backend("cpu", 0);
+        let _ = display.xdotool(&["windowfocus", "--sync", &id]);
+        let presses = 1 + round % 3;
+        (0..presses).for_each(|_| display.key("Insert"));
+        // Milliseconds that look random.
+        std::thread::sleep(Duration::from_millis(round * 7919 % 443));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let added = log.lines("command").iter().filter(|line| line[0] == "Add a sphere").count();
+        let found = spheres_after(&state);
+        // The last one may have been added and not yet saved.
+        let expected = before.unwrap_or(5) + added;
+        assert!(found == expected || found + 1 == expected, "round {round}: {found}, not {expected}");
+        assert!(!film.exists() || checkpoint::load(&film).is_ok(), "round {round}");
+        before = Some(found);
+    }
+    assert!(before.unwrap() > 10, "{before:?}");
 }
 
 #[test]

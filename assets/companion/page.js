@@ -2,11 +2,16 @@
 
 // Colours: the system's, light or dark.
 (() => {
-  const choice = document.querySelector(".theme");
+  const choice = document.createElement("fieldset");
   const root = document.documentElement;
-  choice.hidden = false;
-  for (const input of choice.querySelectorAll("input")) {
-    input.checked = input.value === (root.dataset.theme ?? "auto");
+  choice.className = "theme";
+  choice.innerHTML = "<legend>Colours</legend>";
+  document.querySelector(".contents .list").append(choice);
+  for (const value of ["auto", "light", "dark"]) {
+    const label = choice.appendChild(document.createElement("label"));
+    const input = Object.assign(document.createElement("input"), { type: "radio", name: "theme", value });
+    label.append(input, Object.assign(document.createElement("span"), { textContent: value[0].toUpperCase() + value.slice(1) }));
+    input.checked = value === (root.dataset.theme ?? "auto");
     input.addEventListener("change", () => {
       if (input.value === "auto") delete root.dataset.theme;
       else root.dataset.theme = input.value;
@@ -42,7 +47,7 @@
   });
   document.querySelector("main").addEventListener("click", close);
 
-  // A search in headings and terms, and the way back to where the reader was.
+  // A search in headings, terms and the text, and the way back to where the reader was.
   const make = (name, properties) => Object.assign(document.createElement(name), properties);
   const words = (heading) => {
     const copy = heading.cloneNode(true);
@@ -54,14 +59,44 @@
     item.append(make("a", { href: `#${target.id}`, textContent: words(target) }));
     return item;
   };
-  const placeholder = "Find a heading or a term";
+  const placeholder = "Find in the page";
   const field = make("input", { type: "search", className: "find", placeholder, ariaLabel: placeholder });
   const found = make("ul", { className: "found" });
-  const targets = [...document.querySelectorAll("main :is(h2, h3, dt)[id]")];
-  field.addEventListener("input", () => {
+  found.setAttribute("aria-live", "polite");
+  const headings = [...document.querySelectorAll("main :is(h2, h3, dt)[id]")];
+  let texts;
+  // A place in the text has no address of its own, so a press goes there.
+  const quote = (element, text, place) => {
+    const item = make("li"), link = make("a", { href: `#${element.closest(".chapter").querySelector("h2").id}` });
+    link.append(make("small", { textContent: `…${text.slice(Math.max(0, place - 24), place + 48)}…` }));
+    link.addEventListener("click", (event) => {
+      event.preventDefault();
+      keep();
+      history.pushState(null, "", location.href);
+      element.closest("details:not([open])")?.setAttribute("open", "");
+      element.scrollIntoView({ block: "center" });
+      document.querySelectorAll(".found-here").forEach((old) => old.classList.remove("found-here"));
+      element.classList.add("found-here");
+    });
+    item.append(link);
+    return item;
+  };
+  const find = () => {
     const wanted = field.value.trim().toLowerCase();
-    const hits = targets.filter((target) => wanted.length > 1 && words(target).toLowerCase().includes(wanted));
-    found.replaceChildren(...hits.slice(0, 12).map(entry));
+    if (wanted.length < 2) return found.replaceChildren();
+    const hits = headings.filter((heading) => words(heading).toLowerCase().includes(wanted)).slice(0, 8).map(entry);
+    texts ??= [...document.querySelectorAll(".chapter :is(p, li, td, dd, figcaption, pre)")].filter((element) => !element.querySelector("p, li, td")).map((element) => [element, element.textContent.replace(/\s+/g, " ")]);
+    for (const [element, text] of texts) {
+      const place = text.toLowerCase().indexOf(wanted);
+      if (place >= 0 && hits.length < 14) hits.push(quote(element, text, place));
+    }
+    found.replaceChildren(...(hits.length ? hits : [make("li", { textContent: `Nothing has “${field.value.trim()}”.` })]));
+  };
+  field.addEventListener("input", find);
+  field.addEventListener("keydown", (event) => {
+    if (event.key === "Enter") found.querySelector("a")?.click();
+    if (event.key === "Escape") field.value = "";
+    if (event.key === "Escape") find();
   });
   details.querySelector(".home").after(field, found);
   const remember = (value) => {
@@ -78,9 +113,9 @@
     found.after(make("a", { className: "back", href: `#${left.id}`, textContent: `Continue at ${words(left)}` }));
   }
 
-  // The current chapter's sections are in the list, and the address follows the reader.
+  // The current chapter's sections are in the list.
   const sections = [...document.querySelectorAll(".chapter")];
-  sections.forEach((section) => section.style.setProperty("--text", section.textContent.length));
+  sections.forEach((section) => section.style.setProperty("--length", section.textContent.length));
   const headingsOf = (section) => (section ? [...section.querySelectorAll(":is(h2, h3)[id]")] : []);
   const hasPassed = (element) => element.getBoundingClientRect().top < innerHeight * 0.3;
   const point = (link, isCurrent) => {
@@ -105,21 +140,49 @@
       if (hasRoom.matches) link?.scrollIntoView({ block: "nearest" });
     }
     for (const link of details.querySelectorAll("ol ul a")) point(link, link.hash === `#${passed?.id}`);
-    if (passed && current !== undefined) {
-      remember(passed.id);
-      history.replaceState(history.state, "", `#${passed.id}`);
-    }
+    if (passed && current !== undefined) remember(passed.id);
     current = passed ?? null;
   };
+  // Back and reload return to the place. A distance from the top would be wrong, as chapters have no height before they
+  // are near; that from the last heading is right.
+  history.scrollRestoration = "manual";
+  const keep = () => {
+    const at = current ? { id: current.id, from: Math.round(current.getBoundingClientRect().top) } : { from: -scrollY };
+    history.replaceState({ at }, "");
+  };
+  const go = (at) => {
+    const element = at?.id ? document.getElementById(at.id) : null;
+    if (!element) return scrollTo(0, -(at?.from ?? 0));
+    let turns = 8;
+    const step = () => {
+      scrollBy(0, element.getBoundingClientRect().top - at.from);
+      if (--turns > 0) requestAnimationFrame(step);
+    };
+    step();
+  };
   let waiting = 0;
+  const settle = () => {
+    mark();
+    keep();
+  };
   addEventListener("scroll", () => {
     clearTimeout(waiting);
-    waiting = setTimeout(mark, 150);
+    waiting = setTimeout(settle, 150);
   }, { passive: true });
+  // Before a link leads away.
+  addEventListener("click", (event) => {
+    if (!event.target.closest?.("a[href^='#']")) return;
+    clearTimeout(waiting);
+    settle();
+  }, true);
+  const arrive = (state) => {
+    clearTimeout(waiting);
+    if (state?.at) go(state.at);
+    else document.getElementById(location.hash.slice(1))?.scrollIntoView();
+  };
+  addEventListener("popstate", (event) => arrive(event.state));
+  addEventListener("load", () => arrive(history.state));
   mark();
-  // A remembered distance from the top would be wrong, as chapters have no height before they are near.
-  history.scrollRestoration = "manual";
-  addEventListener("load", () => document.getElementById(location.hash.slice(1))?.scrollIntoView());
   // [ and ] lead to the chapter before and after.
   addEventListener("keydown", (event) => {
     const step = { "[": -1, "]": 1 }[event.key];
@@ -150,7 +213,8 @@
 
 // The definition of a term, beside its link, for the pointer and the keyboard. Escape hides it.
 (() => {
-  const tip = document.getElementById("tip");
+  const tip = Object.assign(document.createElement("div"), { className: "tip", id: "tip", role: "tooltip", hidden: true });
+  document.body.append(tip);
   let term = null;
   let waiting = 0;
   const hide = () => {
@@ -194,3 +258,15 @@
   addEventListener("keydown", (event) => event.key === "Escape" && hide());
   addEventListener("resize", hide);
 })();
+
+// A mistake beside the right picture: pointing at it shows the other in its place.
+for (const list of document.querySelectorAll(".mistakes")) {
+  const [right, ...wrong] = list.querySelectorAll("img");
+  if (!right.alt.includes("As it should be")) continue;
+  for (const picture of wrong) {
+    const shown = Object.assign(right.cloneNode(), { className: "right", alt: "" });
+    picture.after(shown);
+  }
+  const textContent = "Point at a wrong picture, or press it, to see the right one in its place.";
+  list.after(Object.assign(document.createElement("p"), { className: "mistakes-hint", textContent }));
+}

@@ -2,6 +2,7 @@
 
 const REST_MS = 200;
 const MOST_SCALE = 8;
+const FIRST_SLIDERS = ["fuzz", "index", "defocus", "depth", "vfov", "samples"];
 
 let sharedGpu = null;
 const panels = [];
@@ -37,11 +38,12 @@ export class Session {
     const { camera, depth, samples } = this.stage;
     this.settings = { camera, depth, samples, material: {} };
     this.change(this.film !== undefined);
+    this.isChanged = false;
   }
 
   // Starts the film again. While something moves, pictures are as coarse as they must be to follow.
   change(isMoving = true) {
-    this.isStale = true;
+    this.isStale = this.isChanged = true;
     this.isMoving = isMoving;
     clearTimeout(this.rest);
     this.rest = setTimeout(() => {
@@ -166,6 +168,13 @@ class Panel {
     this.canvas.setAttribute("aria-label", still.alt);
     this.hint = element("span", { className: "live-hint", textContent: "drag to turn", hidden: true });
     frame.append(this.canvas, this.hint);
+    // A part that is shown enlarged follows the picture.
+    const part = root.querySelector(".crop img");
+    if (part) {
+      this.part = element("canvas", { hidden: true });
+      this.part.style.cssText = part.style.cssText;
+      part.after(this.part);
+    }
 
     this.button = toggle("Run", () => (this.session ? this.stop("") : this.start()));
     const button = (textContent, onclick) => element("button", { type: "button", textContent, onclick });
@@ -194,12 +203,22 @@ class Panel {
     watcher.observe(frame);
   }
 
-  slider(slider) {
+  // The slider that a link of the page or the stage's material asks for comes first; the others are folded.
+  addSliders() {
+    const { sliders } = this.stage, link = document.querySelector(`a.try[data-stage="${this.root.dataset.stage}"]`);
+    const wanted = [link?.dataset.set.split(/[.=]/)[0], ...FIRST_SLIDERS].find((key) => sliders.some((slider) => slider.key === key));
+    const more = element("details", {}, element("summary", { textContent: "More" }));
+    const [first, others] = [true, false].map((isFirst) => sliders.filter((slider) => (slider.key === wanted) === isFirst));
+    this.inputs = [...first.map((slider) => this.slider(slider, this.sliders)), ...others.map((slider) => this.slider(slider, more))];
+    if (others.length) this.sliders.append(more);
+  }
+
+  slider(slider, place) {
     const { min, max, step, label, unit, key } = slider;
     const [read, write] = key === "samples" ? [(x) => 2 ** x, Math.log2] : [Number, (x) => x];
     const input = element("input", { type: "range", min, max, step });
     const output = element("output");
-    this.sliders.append(element("label", {}, element("span", { textContent: label }), input, output));
+    place.append(element("label", {}, element("span", { textContent: label }), input, output));
     input.oninput = () => {
       this.session.set(slider, read(input.value));
       this.update();
@@ -214,6 +233,7 @@ class Panel {
   update() {
     this.inputs.forEach((show) => show());
     const isLive = this.session !== null;
+    this.button.textContent = isLive ? "Stop" : "Run";
     this.button.setAttribute("aria-pressed", isLive);
     this.adjust.hidden = !isLive || this.inputs.length === 0;
     this.reset.hidden = this.adjust.hidden;
@@ -227,7 +247,7 @@ class Panel {
   start() {
     const { stage } = this;
     stage.buffers = stage.buffers.map((buffer) => (typeof buffer === "string" ? decoded(buffer) : buffer));
-    if (this.inputs.length === 0) this.inputs = stage.sliders.map((slider) => this.slider(slider));
+    if (this.inputs.length === 0) this.addSliders();
     this.said.textContent = "";
     this.tell("starting");
     const session = (this.session = new Session(this, stage));
@@ -244,6 +264,7 @@ class Panel {
     this.session?.end();
     this.session = null;
     this.canvas.hidden = this.hint.hidden = true;
+    if (this.part) this.part.hidden = true;
     this.tell("");
     this.said.textContent = reason;
     this.open(false);
@@ -257,6 +278,13 @@ class Panel {
     }
     canvas.getContext("2d").putImageData(image, 0, 0);
     canvas.hidden = false;
+    // The first noisy samples of an unchanged picture fade in over the still.
+    canvas.style.opacity = this.session.isChanged ? 1 : Math.min(1, (done + 1) / Math.min(wanted, 32));
+    if (this.part) {
+      [this.part.width, this.part.height] = [image.width, image.height];
+      this.part.getContext("2d").putImageData(image, 0, 0);
+      this.part.hidden = false;
+    }
     this.hint.hidden = this.hasMoved || !this.stage.has_rays;
     this.tell(`${done} of ${wanted} samples, ${seconds.toFixed(1)} s`);
   }
@@ -346,6 +374,22 @@ function addWipe(root, live) {
   slider.setAttribute("aria-label", "Wipe between the two pictures");
   slider.hidden = true;
   slider.oninput = () => root.style.setProperty("--live-wipe", `${slider.value}%`);
+  // The seam follows the pointer from its handle or, over stills, from anywhere.
+  const grab = (event) => {
+    const { target } = event, { left, width } = root.getBoundingClientRect();
+    if (slider.hidden || (target !== slider && (live.some((panel) => panel.session) || !target.closest(".live-frame")))) return;
+    event.preventDefault();
+    slider.focus();
+    const follow = ({ clientX }) => {
+      slider.value = (100 * (clientX - left)) / width;
+      slider.oninput();
+    };
+    follow(event);
+    target.setPointerCapture(event.pointerId);
+    target.onpointermove = follow;
+    target.onlostpointercapture = () => (target.onpointermove = null);
+  };
+  root.addEventListener("pointerdown", grab);
   const button = toggle("Wipe", () => {
     const isOn = slider.hidden;
     slider.hidden = !isOn;
@@ -373,7 +417,31 @@ function addWipe(root, live) {
   root.append(slider);
 }
 
+// Brings a picture that is out of view beside the text, until Escape or its button sends it back.
+let docked = null;
+function undock() {
+  if (!docked) return;
+  const { panel, place, link } = docked;
+  docked = null;
+  place.replaceWith(panel.root);
+  document.querySelector(".live-dock").remove();
+  link.focus({ preventScroll: true });
+}
+function dock(panel, link) {
+  if (docked?.panel === panel) return;
+  undock();
+  const { top, bottom, height } = panel.canvas.parentElement.getBoundingClientRect();
+  if (Math.min(bottom, innerHeight) - Math.max(top, 0) > height / 2) return;
+  const place = element("div", { className: "panel" });
+  place.style.height = `${panel.root.offsetHeight}px`;
+  panel.root.replaceWith(place);
+  const back = element("button", { type: "button", textContent: "Back to its place (Esc)", onclick: undock });
+  document.querySelector("main").append(element("aside", { className: "live-dock panels", ariaLabel: "Live picture" }, back, panel.root));
+  docked = { panel, place, link };
+}
+
 function start() {
+  addEventListener("keydown", (event) => event.key === "Escape" && undock());
   use(JSON.parse(document.getElementById("live-data").textContent));
   for (const root of document.querySelectorAll(".panels")) {
     const made = [...root.querySelectorAll(".panel[data-stage]")]
@@ -387,13 +455,12 @@ function start() {
     panels[0].root.after(element("p", { className: "live-notice", textContent }));
   }
   for (const link of document.querySelectorAll("a.try")) {
+    const panel = document.querySelector(link.hash).querySelector(`[data-stage="${link.dataset.stage}"]`).live;
     link.addEventListener("click", (event) => {
-      const figure = document.querySelector(link.hash);
-      const panel = figure.querySelector(`[data-stage="${link.dataset.stage}"]`).live;
       if (!navigator.gpu || !panel) return;
       event.preventDefault();
       panel.try(link.dataset.set);
-      figure.scrollIntoView({ block: "nearest" });
+      dock(panel, link);
     });
   }
   document.addEventListener("visibilitychange", () => panels.forEach((panel) => panel.session?.wake()));

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Measures what the companion shows, in one run on one machine, and notes machine and date in measured.toml. A graphics
+# Measures what the companion shows, in one run on one machine, and notes the date in measured.toml. A graphics
 # card is not needed, but a processor with AVX-512 is, because sentences quote rows of that level. Takes less than
 # ten minutes on two cores; close other programs first. TRY=1 tries it in a minute, with numbers that mean nothing.
 # Usage: cargo build --release --bins --example mappings && docs/companion/measure.sh
@@ -25,5 +25,4 @@ fi
 }
 for name in speed mappings refill; do mv "$report/$name.json" "$out"; done
 mv "$report"/report.json $out/error.json
-machine="$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1), $(nproc) cores"
-sed -i "s/^date = .*/date = \"$(date +%F)\"/; s/^machine = .*/machine = \"$machine\"/" $texts/measured.toml
+sed -i "s/^date = .*/date = \"$(date +%F)\"/" $texts/measured.toml

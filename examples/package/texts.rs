@@ -1,6 +1,6 @@
 //! Manual pages and completions, made from the command line's own description.
 
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValuesParser, ValueParser};
 use clap::{Arg, Command};
 use clap_complete::{Shell, generate_to};
 use std::io;
@@ -30,31 +30,52 @@ pub fn write(directory: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// The command as shells complete it: without what is hidden, and with the values that its own parsers do not list.
+/// The command as shells complete it: without what is hidden, and with the values that its own parsers do not list. It is
+/// made anew, because arguments may conflict with hidden ones.
 fn completed(command: &Command) -> Command {
-    let arguments = command.get_arguments().filter(|argument| !argument.is_hide_set()).cloned();
+    let arguments =
+        command.get_arguments().filter(|argument| !argument.is_hide_set()).map(completed_argument);
     let commands = command.get_subcommands().filter(|command| !command.is_hide_set()).map(completed);
-    // clap's names live as long as the program.
-    let name: &'static str = command.get_name().to_owned().leak();
-    let about = command.get_about().cloned().unwrap_or_default();
-    Command::new(name)
-        .about(about)
+    Command::new(lasting(command.get_name()))
+        .about(command.get_about().cloned().unwrap_or_default())
         .disable_version_flag(true)
-        .args(arguments.map(with_values))
+        .args(arguments)
         .subcommands(commands)
 }
 
-fn with_values(argument: Arg) -> Arg {
+/// clap's names live as long as the program.
+fn lasting(name: &str) -> &'static str {
+    name.to_owned().leak()
+}
+
+fn completed_argument(argument: &Arg) -> Arg {
     let levels = || ["auto"].into_iter().chain(Isa::ALL.map(Isa::name));
-    match argument.get_id().as_str() {
-        "stage" | "only" => {
-            argument.value_parser(PossibleValuesParser::new(Stage::ALL.iter().map(|stage| stage.id)))
-        }
-        "isa" => argument.value_parser(PossibleValuesParser::new(levels())),
-        "simd" => argument.value_parser(["auto", "off", "4", "8", "16"]),
-        "estimate_error" => argument.value_parser(["on", "off"]),
-        _ => argument,
+    let values: ValueParser = match argument.get_id().as_str() {
+        "stage" | "only" => PossibleValuesParser::new(Stage::ALL.iter().map(|stage| stage.id)).into(),
+        "isa" => PossibleValuesParser::new(levels()).into(),
+        "simd" => PossibleValuesParser::new(["auto", "off", "4", "8", "16"]).into(),
+        "estimate_error" => PossibleValuesParser::new(["on", "off"]).into(),
+        _ => argument.get_value_parser().clone(),
+    };
+    let mut shown = Arg::new(argument.get_id().clone())
+        .help(argument.get_help().cloned().unwrap_or_default())
+        .action(argument.get_action().clone())
+        .value_hint(argument.get_value_hint())
+        .value_parser(values)
+        .global(argument.is_global_set());
+    if let Some(long) = argument.get_long() {
+        shown = shown.long(lasting(long));
     }
+    if let Some(short) = argument.get_short() {
+        shown = shown.short(short);
+    }
+    if let Some(names) = argument.get_value_names() {
+        shown = shown.value_names(names.to_vec());
+    }
+    if let Some(count) = argument.get_num_args() {
+        shown = shown.num_args(count);
+    }
+    shown
 }
 
 /// Adds the built-in scenes to the files that complete `--scene`, which clap cannot say.

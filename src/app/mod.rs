@@ -29,7 +29,7 @@ use crate::system::foreign::Captured;
 use crate::system::interrupt::Interrupt;
 use crate::system::journal;
 use anyhow::{Result, anyhow, bail};
-use eframe::egui::{self, Rect, pos2, vec2};
+use eframe::egui::{self, Rect, Vec2, pos2, vec2};
 use std::ops::RangeInclusive;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::process::ExitCode;
@@ -83,6 +83,7 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
             drop(captured);
             journal::expect_panics(false);
             bring_to_monitor(context);
+            fit_to_monitor(context);
             let mut window = Window::with(options, context.storage)?;
             (window.shell.interrupt, window.shell.dialogs.system.is_there) = (Some(heeded), true);
             // The first frame would have egui's own style otherwise.
@@ -130,6 +131,30 @@ fn bring_to_monitor(context: &eframe::CreationContext) {
     if let Some(monitor) = window.available_monitors().next().filter(|_| !is_on_one) {
         window.set_outer_position(monitor.position());
     }
+}
+
+/// Makes a window smaller that would not fit its monitor with its frame: the first one leaves room for a task bar, too.
+fn fit_to_monitor(context: &eframe::CreationContext) {
+    let Some(window) = context.winit_window() else { return };
+    let monitor = window.current_monitor().or_else(|| window.available_monitors().next());
+    let Some(monitor) = monitor.map(|monitor| monitor.size()) else { return };
+    let is_first = context.storage.and_then(|storage| storage.get_string("window")).is_none();
+    let (mut inside, scale) = (window.inner_size(), window.scale_factor() as f32);
+    let [size, monitor] = [inside, monitor].map(|size| vec2(size.width as f32, size.height as f32));
+    let fitting = fitting_size(size, monitor, scale, is_first);
+    if fitting != size {
+        (inside.width, inside.height) = (fitting.x as u32, fitting.y as u32);
+        let _ = window.request_inner_size(inside);
+    }
+}
+
+/// The size in pixels of the inside of a window that should have `size`, on a monitor where a point has `scale` pixels.
+fn fitting_size(size: Vec2, monitor: Vec2, scale: f32, is_first: bool) -> Vec2 {
+    /// Points of a usual frame with its title bar, and of a task bar.
+    const FRAME: Vec2 = vec2(4.0, 40.0);
+    const TASK_BAR: Vec2 = vec2(0.0, 48.0);
+    let around = if is_first { FRAME + TASK_BAR } else { FRAME };
+    size.min((monitor - scale * around).max(vec2(480.0, 320.0))).floor()
 }
 
 /// Whether enough of a window is on a monitor to find and move it.
@@ -220,6 +245,21 @@ mod tests {
             (rect(300.0, -800.0, 1280.0, 800.0), false),
         ] {
             assert_eq!(is_in_sight(window, monitor), expected, "{window:?}");
+        }
+    }
+
+    #[test]
+    fn the_window_fits_its_monitor_with_its_frame() {
+        for (monitor, scale, is_first, expected) in [
+            ([1920.0, 1080.0], 1.0, true, [1280.0, 800.0]),
+            ([1280.0, 800.0], 1.0, true, [1276.0, 712.0]),
+            ([1366.0, 768.0], 1.0, true, [1280.0, 680.0]),
+            ([1366.0, 768.0], 1.0, false, [1280.0, 728.0]),
+            ([1280.0, 800.0], 2.0, true, [1272.0, 624.0]),
+            ([320.0, 200.0], 1.0, true, [480.0, 320.0]),
+        ] {
+            let found = fitting_size(vec2(1280.0, 800.0), monitor.into(), scale, is_first);
+            assert_eq!(<[f32; 2]>::from(found), expected, "{monitor:?} {scale} {is_first}");
         }
     }
 

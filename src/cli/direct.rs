@@ -79,24 +79,27 @@ pub struct CompanionOptions {
 /// Options of `weekender check`.
 #[derive(Clone, Debug, Args)]
 pub struct CheckOptions {
-    /// The picture that your own program has written: PPM (P3 or P6) or PNG, of any shape, from 16 x 9 to 4 million
-    /// pixels
-    #[arg(value_name = "PICTURE")]
-    pub picture: PathBuf,
-    /// The stage of the book that it shows [default: the one that it looks like]
+    /// The pictures that your own program has written: PPM (P3 or P6) or PNG, of any shape, from 16 x 9 to 4 million
+    /// pixels; for several, one line each
+    #[arg(required = true, num_args = 1.., value_name = "PICTURE")]
+    pub pictures: Vec<PathBuf>,
+    /// The stage of the book that they show [default: the one that each looks like]
     #[arg(long, value_name = "ID", value_parser = Stage::find)]
     pub stage: Option<&'static Stage>,
-    /// Write mine.png, ours.png and difference.png to this directory
+    /// Check again after each change, also while the picture is being written, until Ctrl-C
+    #[arg(long, conflicts_with = "out")]
+    pub watch: bool,
+    /// Write mine.png, ours.png and difference.png of a single picture to this directory
     #[arg(long, value_name = "DIRECTORY")]
     pub out: Option<PathBuf>,
-    /// Write the finding as JSON; - for standard output
+    /// Write the finding as JSON, with --watch or several pictures one line each; - for standard output
     #[arg(long, value_name = "FILE|-")]
     pub json: Option<PathBuf>,
 }
 
 impl CheckOptions {
     /// The files of `--out`: mine, ours and their difference.
-    pub fn pictures(&self) -> Vec<PathBuf> {
+    pub fn outputs(&self) -> Vec<PathBuf> {
         let names = ["mine.png", "ours.png", "difference.png"];
         self.out.iter().flat_map(|out| names.map(|name| out.join(name))).collect()
     }

@@ -120,8 +120,8 @@ pub enum Command {
     Gallery(Box<GalleryOptions>),
     /// Find the mistake in a picture that your own program has rendered
     ///
-    /// Finds the stage of the book that the picture shows, and the likeliest mistake with what to change. The exit code
-    /// is 0 if the picture is right, 1 if there is a mistake and 2 if it could not be checked.
+    /// Finds the stage of the book that the picture shows, and the mistake with what to change. The exit code is 0 if all
+    /// pictures are right, 1 if there is a mistake, and otherwise 2 if one could not be checked.
     Check(Box<CheckOptions>),
 }
 

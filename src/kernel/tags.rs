@@ -54,8 +54,6 @@ macro_rules! tags {
     };
 }
 
-pub(crate) use tags;
-
 tags!(Roots { Nearer = "ROOTS_NEARER", Both = "ROOTS_BOTH", Farther = "ROOTS_FARTHER" });
 
 tags!(Shading {
@@ -82,7 +80,7 @@ tags!(Transfer {
 tags!(SamplerKind { Independent = "SAMPLER_INDEPENDENT", Sobol = "SAMPLER_SOBOL" });
 
 /// The values of one enumeration in WGSL.
-pub(crate) fn values<T: Tag>() -> String {
+fn values<T: Tag>() -> String {
     T::ALL.iter().fold(String::new(), |mut text, value| {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "const {} = {}u;", value.constant(), value.tag());

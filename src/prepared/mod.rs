@@ -2,6 +2,7 @@
 
 mod bounded;
 mod camera;
+mod effort;
 mod facts;
 mod groups;
 pub mod hierarchy;

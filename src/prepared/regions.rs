@@ -3,7 +3,7 @@
 //! The regions follow from the spheres alone, not from the number of threads, so the result is always the same tree.
 
 use super::bounded::Bounded;
-use super::hierarchy::{Effort, Leaves, params};
+use super::effort::{Effort, Leaves, params};
 use super::parted;
 use glam::DVec3;
 use obvhs::Boundable;

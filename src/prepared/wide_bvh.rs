@@ -4,7 +4,7 @@
 //! it reads.
 
 use super::bounded::Bounded;
-use super::hierarchy::{Effort, Leaves};
+use super::effort::{Effort, Leaves};
 use super::regions::{Forest, Method};
 use crate::kernel::WIDE_STACK_SIZE;
 use crate::scene::Sphere;

@@ -24,8 +24,7 @@ impl GpuRenderer {
         index: u64,
     ) -> Result<PathRecord, RenderError> {
         self.with_loaded(job, &go_on(), |this, loaded| {
-            let kernel =
-                this.kernels.get(&this.gpu, (EntryPoint::PathRecord, loaded.features), &go_on())?;
+            let kernel = this.kernels.get(&this.gpu, (EntryPoint::PathRecord, loaded.features), &go_on())?;
             let buffers = this.own_film(loaded)?;
             let settings = job.settings();
             let (blocks, _) =

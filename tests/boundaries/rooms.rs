@@ -12,7 +12,7 @@ job: system scene stages film
 kernel: scene stages film job
 prepared: scene stages film job kernel
 render_cpu: system stages film job kernel prepared
-render_gpu: stages film job kernel prepared
+render_gpu: system stages film job kernel prepared
 backends: system scene stages film job kernel render_cpu render_gpu
 progressive: system numbers scene stages film denoise job backends
 cli: system scene stages film job render_cpu render_gpu backends progressive

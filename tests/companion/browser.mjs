@@ -4,13 +4,14 @@ import { existsSync } from "node:fs";
 import { createRequire } from "node:module";
 import { delimiter, join } from "node:path";
 import { pathToFileURL } from "node:url";
+import { Picture, claims } from "./claims.mjs";
 
 const { chromium } = createRequire(new URL("../web/package.json", import.meta.url))("playwright-core");
 const executablePath = process.env.PATH.split(delimiter).map((path) => join(path, "chromium")).find(existsSync);
 const flags = ["--no-sandbox", "--headless=new", "--enable-unsafe-webgpu", "--use-angle=swiftshader"];
 const vulkan = ["--enable-features=Vulkan", "--use-vulkan=swiftshader"];
 const browser = await chromium.launch({ executablePath, args: [...flags, ...vulkan] });
-setTimeout(() => process.exit(1), 300_000).unref();
+setTimeout(() => process.exit(1), 540_000).unref();
 const seen = { console: [], cut: [], still: [], links: [] };
 const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
 page.on("console", (message) => seen.console.push(message.text()));
@@ -23,6 +24,7 @@ for (const width of [400, 800, 1280, 1920]) {
   const cut = await page.evaluate(() => {
     const all = [...document.querySelectorAll("pre")];
     all.forEach((pre) => pre.parentElement.classList.add("shown"));
+    document.querySelectorAll(".fold").forEach((fold) => (fold.open = true));
     const wide = all.filter((pre) => pre.scrollWidth > pre.clientWidth).map((pre) => pre.textContent.slice(0, 60));
     return [...wide, ...(document.documentElement.scrollWidth > innerWidth ? ["the page"] : [])];
   });
@@ -83,20 +85,95 @@ const pair = page.locator("[id^=denoised-]");
 await pair.getByRole("button", { name: "Wipe" }).click();
 if ((await pair.locator(".live-wiping").count()) !== 1) seen.still.push("the wipe of a denoised picture");
 
-// Each link that sets a picture: the sliders then have the values.
-for (const link of await page.locator("a.try").all()) {
-  const wrong = await link.evaluate((link) => {
-    link.click();
-    const { live } = document.querySelector(link.hash).querySelector(`[data-stage="${link.dataset.stage}"]`);
-    const wrong = [...new URLSearchParams(link.dataset.set)].filter(([key, value]) => {
-      const sliders = live.stage.sliders.filter((slider) => slider.key === key.split(".")[0]);
-      return sliders.length === 0 || !sliders.some((slider) => Math.abs(live.session.value(slider) - value) < 1e-9);
-    });
-    live.stop("");
-    return wrong.map(([key, value]) => `${link.dataset.stage}: ${key}=${value}`);
-  });
-  seen.links.push(...wrong);
+// The seam follows a pointer that moves fast, from its handle and from anywhere on the pictures.
+const seam = () => pair.locator(".panels").evaluate((panels) => parseFloat(panels.style.getPropertyValue("--live-wipe")));
+const { x, y, width, height } = await placed(pair.locator(".panels"));
+for (const from of [0.5, 0.2]) {
+  await page.mouse.move(x + from * width, y + height / 3);
+  await page.mouse.down();
+  await page.mouse.move(x + 0.9 * width, y + height / 3);
+  await page.mouse.up();
+  if (Math.abs((await seam()) - 90) > 2) seen.still.push(`the seam, dragged from ${from}`);
+  await page.mouse.move(x + 0.9 * width, y + height / 3);
+  await page.mouse.down();
+  await page.mouse.move(x + 0.5 * width, y + height / 3);
+  await page.mouse.up();
 }
+
+// Find leads to a text by Enter and says when it finds nothing. Back leads to where the reader was, and so does a reload.
+const field = page.getByRole("searchbox");
+const topOf = (id) => page.evaluate((id) => Math.round(document.getElementById(id).getBoundingClientRect().top), id);
+const settled = () => page.waitForTimeout(600);
+await field.fill("zyzzyva");
+if (!(await page.locator(".found").innerText()).includes("Nothing")) seen.still.push("a search for nothing");
+await field.fill("archimedes");
+await field.press("Enter");
+await settled();
+if ((await page.locator(".found-here").count()) !== 1) seen.still.push("a search in the text");
+await page.locator("#figure-metal").scrollIntoViewIfNeeded();
+await settled();
+const before = await topOf("figure-metal");
+await page.locator("#figure-metal ~ p a[href='#camera']").first().click();
+await settled();
+await page.goBack();
+await settled();
+if (Math.abs((await topOf("figure-metal")) - before) > 3) seen.still.push(`Back: ${await topOf("figure-metal")} instead of ${before}`);
+await page.reload();
+await settled();
+if (Math.abs((await topOf("figure-metal")) - before) > 3) seen.still.push(`reload: ${await topOf("figure-metal")} instead of ${before}`);
+await page.goto(`${page.url().split("#")[0]}#term-lane`);
+await settled();
+await page.mouse.wheel(0, 30);
+await settled();
+if (!page.url().endsWith("#term-lane")) seen.still.push("a deep link");
+
+// Each link that sets a picture: what its text says must hold of the picture.
+const shown = (link, isAsLinked) => link.evaluate(async (link, isAsLinked) => {
+  const { live } = document.querySelector(`:is(${link.hash}, .live-dock) [data-stage="${link.dataset.stage}"]`);
+  if (isAsLinked) link.click();
+  else live.start();
+  // A picture that is far away comes to the reader.
+  const isNear = () => {
+    const { top, bottom } = live.canvas.parentElement.getBoundingClientRect();
+    return top < innerHeight && bottom > 0;
+  };
+  const wasNear = isNear();
+  if (!isAsLinked) live.canvas.parentElement.scrollIntoView();
+  const { settings } = live.session, isAboutSamples = link.dataset.set.startsWith("samples");
+  if (!isAboutSamples) settings.samples = Math.min(settings.samples, live.stage.width > 500 ? 1 : 4);
+  live.session.change(false);
+  const isDone = () => {
+    const { session, stage, told } = live, { film, isStale } = session ?? {};
+    return film && !isStale && film.width === stage.width && told.textContent.startsWith(`${settings.samples} of`);
+  };
+  for (let i = 0; i < 1200 && live.session && !isDone(); i++) await new Promise((passed) => setTimeout(passed, 50));
+  if (!isDone()) throw new Error(`${link.dataset.stage} was not rendered: ${live.said.textContent}`);
+  const canvas = new OffscreenCanvas(480, Math.round((480 * live.stage.height) / live.stage.width)), context = canvas.getContext("2d");
+  context.drawImage(live.canvas, 0, 0, canvas.width, canvas.height);
+  const data = [...context.getImageData(0, 0, canvas.width, canvas.height).data];
+  live.stop("");
+  dispatchEvent(new KeyboardEvent("keydown", { key: "Escape" }));
+  const isBack = document.querySelector(link.hash).contains(live.root);
+  return { picture: { width: canvas.width, height: canvas.height, data }, isGood: wasNear && isBack };
+}, isAsLinked);
+const found = new Set(), usual = new Map();
+for (const link of await page.locator("a.try").all()) {
+  const key = await link.evaluate(({ dataset }) => `${dataset.stage}?${dataset.set}`), stage = key.split("?")[0];
+  const text = (await link.evaluate((link) => link.closest("p, li, figcaption").textContent)).replace(/\s+/g, " ");
+  const rows = claims.filter(([wanted, words]) => wanted === key && text.includes(words));
+  if (rows.length === 0) seen.links.push(`${key}: claims.mjs has no words of “${text}”`);
+  await placed(link);
+  const now = await shown(link, true);
+  if (!now.isGood) seen.links.push(`${key}: the picture does not come and return`);
+  // A claim that compares has the usual picture as a parameter.
+  if (!usual.has(stage) && rows.some((row) => row[2].length > 1)) usual.set(stage, new Picture((await shown(link, false)).picture));
+  for (const row of rows) {
+    found.add(row);
+    const holds = row[2](new Picture(now.picture), usual.get(stage), usual);
+    if (holds !== true) seen.links.push(`${key}: “${row[1]}” is not true: ${JSON.stringify(holds)}`);
+  }
+}
+seen.links.push(...claims.filter((row) => !found.has(row)).map(([key, words]) => `${key}: no link says “${words}”`));
 seen.linkCount = await page.locator("a.try").count();
 console.log(JSON.stringify(seen));
 await browser.close();

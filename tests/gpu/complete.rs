@@ -105,7 +105,7 @@ fn stuck_paths_are_not_resumed() {
     // Rays along the axis pass through the boxes of all balls and miss the balls.
     let mut scene = Scene::default();
     let matte = scene.add_material("matte", Material::Lambertian { albedo: DVec3::splat(0.5) });
-    for i in 0..20_000 {
+    for i in 0..70_000 {
         scene.add_sphere(DVec3::new(0.8, 0.8, -2.0 - 1e-3 * f64::from(i)), 1.0, matte);
     }
     let camera = Camera { vfov_degrees: 0.1, ..Camera::default() };
@@ -115,7 +115,8 @@ fn stuck_paths_are_not_resumed() {
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [5, 3], 30, SamplerKind::Independent, false);
     assert!(rendered(&mut used, &job, 8) == rendered(&mut gpu(options).unwrap(), &job, 8));
-    assert_eq!(used.take_messages(), Vec::<String>::new());
+    let messages = used.take_messages();
+    assert!(!messages.iter().any(|message| message.contains("traced again")), "{messages:?}");
 }
 
 /// A film keeps the samples it has; those still on the device are traced again and do not count twice.

@@ -95,8 +95,7 @@ impl Programs {
                     wgpu::BindGroupEntry { binding, resource }
                 })
                 .collect();
-            let described =
-                wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries };
+            let described = wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries };
             (device.create_bind_group(&described), layout, buffers)
         });
         let layouts: Vec<_> = bound.iter().map(|(_, layout, _)| Some(layout)).collect();

@@ -1,12 +1,12 @@
 //! Boxes of the hierarchies.
 
 use super::gpu_common::program::Programs;
+use super::probe::Probe;
 use super::{L, Words, float, list, rays, run, uniform, unit_vector, vector, words};
 use glam::DVec3;
 use weekender::kernel::{NONE, Node};
 use weekender::render_cpu::bvh::{misses_box, slabs_of};
 use weekender::render_cpu::lanes::Single;
-use super::probe::Probe;
 use weekender::stages::DielectricLaws;
 
 /// A ray, a box that it hits in about half the cases, the length of the ray, and the largest coordinate.

@@ -6,9 +6,9 @@ mod boxes;
 mod gpu_common;
 mod names;
 mod numbers;
-mod probe;
 #[path = "../oracle/mod.rs"]
 mod oracle;
+mod probe;
 mod surfaces;
 
 use glam::DVec3;

@@ -1,10 +1,10 @@
 //! Angles of incidence, and the stages' rules that replace the book's final ones.
 
 use super::gpu_common::program::Programs;
+use super::probe::Probe;
 use super::{L, Ulps, float, job, list, run, uniform, unit_vector, vector, words};
 use weekender::render_cpu::lanes::Single;
 use weekender::render_cpu::material::{hemisphere, incidence_of, incidence_of_sine2};
-use super::probe::Probe;
 use weekender::stages::DielectricLaws;
 
 /// Cosines of rays from either side, some of which rounding puts beyond 1.

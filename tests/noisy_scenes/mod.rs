@@ -106,7 +106,7 @@ pub fn random(seed: u64) -> Recipe {
         random.next();
     }
     let brightness = 10_f64.powf(random.between(-3.0, 1.5));
-    let mut colour = |random: &mut Random| DVec3::new(random.next(), random.next(), random.next());
+    let colour = |random: &mut Random| DVec3::new(random.next(), random.next(), random.next());
     let sky = Sky { bottom: brightness * colour(&mut random), top: brightness * colour(&mut random) };
     let mut scene = Scene { sky, ..Scene::default() };
     let ground = scene.add_material("ground", Material::Lambertian { albedo: colour(&mut random) });

@@ -76,7 +76,11 @@ fn missing_samples_are_noticed() {
     });
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::Samples));
-    assert!(status.messages.iter().any(|said| said.contains("trace 64 samples")), "{:?}", status.messages);
+    assert!(
+        status.messages.iter().any(|said| said.contains("asked for 64 samples")),
+        "{:?}",
+        status.messages
+    );
     assert_eq!(progressive.finish(), Some(expected(64)));
 }
 

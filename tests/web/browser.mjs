@@ -56,7 +56,7 @@ async function opened(...preparations) {
 let page = await opened(remember);
 const shot = (name) => page.screenshot({ path: join(folder, `${name}.png`) });
 const panel = (id) => page.locator(`.panel[data-stage="${id}"]`);
-const button = (id, name) => panel(id).getByRole("button", { name, exact: true });
+const button = (id, name) => panel(id).getByRole("button", { name: name === "Run" ? /^(Run|Stop)$/ : name, exact: true });
 const bar = async (id) => (await panel(id).locator(".live-bar").innerText()).replaceAll("\n", " ");
 const settings = (id) => panel(id).evaluate((element) => element.live.session.settings);
 const done = (id) => panel(id).evaluate((element) => element.live.session.film?.done ?? 0);
@@ -119,6 +119,7 @@ await panel(glass).scrollIntoViewIfNeeded();
 // Running a figure moves no text; the sliders do, since they must not cover it.
 seen.jumps = JSON.stringify(await heights()) !== JSON.stringify(heightsBefore);
 await button(glass, "Adjust").click();
+await panel(glass).locator("summary").click();
 await shot("live");
 seen.drag = await changes(() => picture(glass), async () => {
   await drag(glass, 120, 40);

@@ -3,6 +3,7 @@
 use crate::common::{SMALL, control, has_samples, name_file, open, save, send, until};
 use crate::questions::Ask as _;
 use eframe::egui::{self, Key, Modifiers};
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -112,7 +113,7 @@ fn failures_are_told_and_what_is_shown_stays() {
 }
 
 #[test]
-fn a_file_is_replaced_only_with_a_warning() {
+fn enter_never_replaces_a_file() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("mine.png");
     std::fs::write(&path, "mine").unwrap();
@@ -124,10 +125,82 @@ fn a_file_is_replaced_only_with_a_warning() {
     harness.step();
     control(&harness, "Name").type_text(path.to_str().unwrap());
     harness.run_steps(3);
+    harness.key_press(Key::Enter);
+    until(&mut harness, "another file", says("Saved mine 2.png"));
+    assert!(std::fs::read(&path).unwrap() == b"mine" && directory.path().join("mine 2.png").exists());
+    name_file(&mut harness, Command::Save, &path);
+    until(&mut harness, "a third one", says("Saved mine 3.png"));
+
+    send(&mut harness, Command::Save);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    control(&harness, "Name").type_text(path.to_str().unwrap());
+    harness.run_steps(3);
     harness.get_by_label("Replace").click();
     until(&mut harness, "the file", says("Saved mine.png"));
     assert!(std::fs::read(&path).unwrap().starts_with(b"\x89PNG"));
-    assert_eq!(harness.state_mut().remembered_mut().recent, [path]);
+    assert_eq!(harness.state_mut().remembered_mut().recent[0], path);
+}
+
+/// What the window answers to a request to close it.
+fn close(harness: &mut Harness<'_, Window>) -> Vec<egui::ViewportCommand> {
+    let root = harness.input_mut().viewports.get_mut(&egui::ViewportId::ROOT).unwrap();
+    root.events.push(egui::ViewportEvent::Close);
+    harness.step();
+    let commands = harness.output().viewport_output[&egui::ViewportId::ROOT].commands.clone();
+    let root = harness.input_mut().viewports.get_mut(&egui::ViewportId::ROOT).unwrap();
+    root.events.clear();
+    commands
+}
+
+#[test]
+fn a_window_that_still_renders_to_save_asks_before_it_closes() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("large.png");
+    let mut harness = open("--stage defocus --size 48x27 --samples 64 --device cpu");
+    until(&mut harness, "the end", has_samples(64));
+    assert!(!close(&mut harness).contains(&egui::ViewportCommand::CancelClose), "nothing is lost");
+    send(&mut harness, Command::Save);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    control(&harness, "Name").type_text(path.to_str().unwrap());
+    control(&harness, "As in the book").click_accesskit();
+    harness.run_steps(3);
+    control(&harness, "Save").click();
+    harness.run_steps(2);
+    assert!(!path.exists(), "it was ready before it could be asked about");
+    assert!(close(&mut harness).contains(&egui::ViewportCommand::CancelClose));
+    harness.run_steps(2);
+    harness.get_by_label("Save, then close").click();
+    let begin = std::time::Instant::now();
+    loop {
+        harness.step();
+        let commands = &harness.output().viewport_output[&egui::ViewportId::ROOT].commands;
+        if commands.contains(&egui::ViewportCommand::Close) {
+            break;
+        }
+        assert!(begin.elapsed().as_secs() < 180, "{:?}", harness.state().messages());
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    assert!(image::open(&path).is_ok());
+}
+
+/// What a button of a message offers is what it does.
+#[test]
+fn an_offer_to_undo_goes_when_something_else_was_changed() {
+    let mut harness = open("--stage metal --size 32x18 --device cpu");
+    harness.state_mut().document_mut().camera.vfov_degrees = 31.0;
+    harness.run_steps(3);
+    harness.key_press(Key::PageDown);
+    harness.run_steps(3);
+    assert!(says("kept in Undo")(harness.state()), "{:?}", harness.state().messages());
+    send(&mut harness, Command::Undo);
+    harness.run_steps(2);
+    assert!(!says("kept in Undo")(harness.state()), "{:?}", harness.state().messages());
+    assert!(says("Undone: ")(harness.state()));
+    harness.state_mut().document_mut().camera.vfov_degrees = 51.0;
+    harness.run_steps(3);
+    assert!(!says("Undone: ")(harness.state()), "{:?}", harness.state().messages());
 }
 
 #[test]

@@ -36,8 +36,10 @@ fn the_card_is_below_the_picture_and_stays_until_it_is_closed() {
     harness.key_press(Key::PageUp);
     harness.run_steps(3);
     assert!(has_card(&harness));
+    assert!(harness.query_by_label("3, done").is_some() && harness.query_by_label("2, done").is_none());
     harness.get_by_label("Start the book at 2.1").click();
     harness.run_steps(3);
+    assert!(harness.query_by_label("Start the book at 2.1").is_none(), "it is open");
     assert_eq!(harness.state().shown_document().stage().unwrap().id, "ppm-tiny");
     harness.get_by_label(CLOSE).click();
     harness.run_steps(3);

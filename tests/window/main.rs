@@ -22,6 +22,7 @@ mod plot;
 mod present;
 mod preview;
 mod questions;
+mod readout;
 mod recent;
 mod recovered;
 mod resuming;

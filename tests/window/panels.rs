@@ -1,8 +1,8 @@
 //! The panels in the whole window.
 
-use crate::common::{SMALL, control, has_samples, open, open_sized, send, until};
+use crate::common::{SMALL, control, drag, has_samples, open, open_sized, send, until};
 use crate::questions::Ask as _;
-use eframe::egui::{Key, accesskit::Role};
+use eframe::egui::{Key, Modifiers, PointerButton, accesskit::Role};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use weekender::app::{Command, Device, Window};
@@ -22,6 +22,28 @@ fn sliders_change_the_picture_and_undo_brings_it_back() {
         harness.run_steps(3);
     }
     assert_eq!(harness.state().shown_document().camera, before);
+}
+
+#[test]
+fn a_drag_on_the_picture_takes_the_keys_from_a_field() {
+    let mut harness = open("--stage metal --size 32x18 --device cpu");
+    until(&mut harness, "a picture", has_samples(1));
+    let field = harness.get_all_by_label("Field of view").find(|node| node.rect().width() < 80.0).unwrap();
+    field.click();
+    harness.run_steps(3);
+    drag(&mut harness, PointerButton::Primary, Modifiers::NONE);
+    harness.key_press(Key::H);
+    harness.run_steps(3);
+    assert_eq!(harness.state().performed(), Some(Command::ShowMe));
+}
+
+#[test]
+fn the_sky_is_changed_beside_the_picture() {
+    let mut harness = open("--stage metal --size 32x18 --device cpu");
+    assert!(harness.query_all_by_label("Overhead").next().is_none());
+    send(&mut harness, Command::SkyColours);
+    harness.run_steps(20);
+    assert!(harness.query_all_by_label("Overhead").next().is_some() && !harness.state().has_dialog());
 }
 
 #[test]

@@ -64,6 +64,10 @@ pub trait Ask {
     /// The pixel that the panel describes, and its linear radiance.
     fn inspected(&self) -> Option<([u32; 2], [f64; 3])>;
 
+    /// The pixel that the panel describes, its bytes, whether it is one of the other picture, and the radiance of the other
+    /// picture and of this one, if they are compared.
+    fn readout(&self) -> Option<([u32; 2], [u8; 3], bool, Option<[[f64; 3]; 2]>)>;
+
     fn is_presenting(&self) -> bool;
 
     fn has_sight(&self) -> bool;
@@ -185,7 +189,13 @@ impl Ask for Window {
     }
 
     fn inspected(&self) -> Option<([u32; 2], [f64; 3])> {
-        self.tools.inspector.pixel().map(|pixel| (pixel.at, pixel.mean))
+        self.tools.inspector.readout().map(|readout| (readout.pixel.at, readout.pixel.mean))
+    }
+
+    fn readout(&self) -> Option<([u32; 2], [u8; 3], bool, Option<[[f64; 3]; 2]>)> {
+        let readout = self.tools.inspector.readout()?;
+        let compared = readout.compared.as_ref().map(|[theirs, mine]| [theirs.mean, mine.mean]);
+        Some((readout.pixel.at, readout.pixel.bytes, readout.is_other, compared))
     }
 
     fn is_presenting(&self) -> bool {

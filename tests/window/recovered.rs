@@ -12,6 +12,7 @@ use weekender::app::{Command, Device, Dock, Show, Theme, Window};
 use weekender::cli::{self, Request, WindowOptions};
 use weekender::film::checkpoint;
 use weekender::progressive::Stop;
+use weekender::stages::Stage;
 
 const PICTURE: &str = "--stage glass-schlick --size 32x18 --device cpu --vfov 31";
 
@@ -62,25 +63,90 @@ fn the_last_picture_comes_back_with_its_samples() {
     assert_ne!(fresh.state().shown_document().stage().unwrap().id, "glass-schlick");
 }
 
+fn says(window: &Window, words: &str) -> bool {
+    window.messages().iter().any(|text| text.contains(words))
+}
+
 #[test]
-fn the_film_of_a_window_that_ended_early_is_offered() {
+fn a_window_that_ended_early_comes_back_with_its_film_unless_another_picture_is_wanted() {
     let state = tempfile::tempdir().unwrap();
     let film = state.path().join("autosave.exr");
     let mut first = window(&format!("{PICTURE} --samples 4000000000"), state.path(), 0);
     until(&mut first, "a film", |_| film.exists());
     // Not in order.
     drop(first);
+    let samples = checkpoint::load(&film).unwrap().film.sample_count();
 
-    let mut next = window("--device cpu", state.path(), 0);
-    let samples = checkpoint::load(&state.path().join("recovered.exr")).unwrap().film.sample_count();
-    assert_ne!(next.state().shown_document().camera.vfov_degrees, 31.0, "it was opened unasked");
-    until(&mut next, "a film of its own", |_| film.exists());
-    next.get_by_label("Resume").click();
-    until(&mut next, "its samples", |window| held(window) == samples);
+    let mut next = window("--device cpu", state.path(), 3600);
     assert_eq!(next.state().shown_document().camera.vfov_degrees, 31.0);
-    next.state_mut().on_exit(None);
+    assert!(says(next.state(), "ended early") && !has_offer(&next), "{:?}", next.state().messages());
+    until(&mut next, "its samples", |window| held(window) == samples);
     drop(next);
-    assert!(!has_offer(&window("--device cpu", state.path(), 3600)), "all windows have ended in order");
+
+    // It waits for an answer, whatever other windows do.
+    for _ in 0..2 {
+        let mut other = window("--stage metal --size 32x18 --device cpu", state.path(), 0);
+        assert!(has_offer(&other));
+        until(&mut other, "a film of its own", |_| film.exists());
+        other.state_mut().on_exit(None);
+    }
+    let mut last = window("--device cpu", state.path(), 3600);
+    last.get_by_label("Resume").click();
+    until(&mut last, "its samples", |window| held(window) == samples);
+    assert_eq!(last.state().shown_document().camera.vfov_degrees, 31.0);
+    last.state_mut().on_exit(None);
+    drop(last);
+    assert!(!has_offer(&window("--device cpu", state.path(), 3600)), "the user has answered");
+}
+
+/// A film of another picture that was saved earlier does not come in its place.
+#[test]
+fn what_was_edited_last_comes_back_with_its_history() {
+    let state = tempfile::tempdir().unwrap();
+    let film = state.path().join("autosave.exr");
+    let mut first = window(&format!("{PICTURE} --samples 4000000000"), state.path(), 0);
+    until(&mut first, "a film", |_| film.exists());
+    drop(first);
+
+    let mut second = window("--device cpu", state.path(), 3600);
+    let count = |harness: &Harness<'_, Window>| harness.state().shown_document().scene().spheres.len();
+    send(&mut second, Command::Stage(Stage::find("metal").unwrap()));
+    let before = count(&second);
+    send(&mut second, Command::AddSphere);
+    second.run_steps(30);
+    second.state_mut().document_mut().camera.vfov_degrees = 77.0;
+    second.run_steps(30);
+    let edits = state.path().join("edits.json");
+    until(&mut second, "the edits", |_| std::fs::read_to_string(&edits).unwrap().contains("77.0"));
+    drop(second);
+
+    let mut third = window("--device cpu", state.path(), 3600);
+    let angle = |harness: &Harness<'_, Window>| harness.state().shown_document().camera.vfov_degrees;
+    assert_eq!(third.state().shown_document().stage().unwrap().id, "metal");
+    assert_eq!((count(&third), angle(&third)), (before + 1, 77.0));
+    assert!(has_offer(&third), "the film, which is another picture's");
+    send(&mut third, Command::Undo);
+    assert!(count(&third) == before + 1 && angle(&third) != 77.0);
+    send(&mut third, Command::Undo);
+    assert_eq!(count(&third), before);
+    send(&mut third, Command::Undo);
+    assert_eq!(third.state().shown_document().stage().unwrap().id, "glass-schlick");
+    third.get_by_label("Delete it").click();
+    third.run_steps(3);
+    third.state_mut().on_exit(None);
+    drop(third);
+    let left = std::fs::read_dir(state.path()).unwrap().map(|entry| entry.unwrap().file_name());
+    let left: Vec<_> = left.filter(|name| name.to_str().unwrap().starts_with("recovered")).collect();
+    assert!(left.is_empty(), "{left:?}");
+}
+
+/// In order or not, and whatever was on the screen: the next window has a title bar.
+#[test]
+fn no_window_begins_in_full_screen() {
+    let mut stored = Stored::default();
+    stored.set_string("window", "(fullscreen:true,maximized:false)".to_owned());
+    remembering("--stage metal --size 16x9", &stored).state_mut().save(&mut stored);
+    assert_eq!(stored.get_string("window").unwrap(), "(fullscreen:false,maximized:false)");
 }
 
 #[test]

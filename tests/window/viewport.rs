@@ -142,7 +142,7 @@ fn the_menu_of_a_right_click_means_what_is_there() {
     until(&mut harness, "a picture", has_samples(1));
     let count = spheres(&harness).len();
     let at = on_screen(&harness, glam::DVec3::new(0.0, 0.0, -1.2));
-    choose_from_menu(&mut harness, at, "Paths of a pixel");
+    choose_from_menu(&mut harness, at, "Paths of this pixel");
     assert_eq!(harness.state().performed(), Some(Command::ListPaths));
     until(&mut harness, "paths", |window| window.listed_paths() > 0);
     let at = on_screen(&harness, glam::DVec3::new(0.0, 0.0, -1.2));

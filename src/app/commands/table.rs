@@ -155,7 +155,7 @@ table! {
     CheckPicture "Check my picture…", "Finds the mistake in a picture that your own program has rendered",
         also("wrong mistake homework verify compare");
     Save "Save…", "Saves the picture, the film or the scene", keys(CTRL, Key::S), line(),
-        needs(is_live, KEPT_IS_SHOWN), also("export png ppm exr toml download film scene");
+        needs(is_live, KEPT_IS_SHOWN), also("save as export png ppm exr toml download film scene");
     ShowInFolder "Show in folder", "Opens the folder of the file that was saved or opened last",
         needs(|f| !f.model.remembered.recent.is_empty(), "Nothing has been saved or opened yet"),
         also("directory explorer finder");
@@ -181,7 +181,7 @@ table! {
         needs(has_selection, NO_SPHERE), also("copy ball");
     DeleteSphere "Delete the sphere", "Removes the selected sphere", key(Key::Delete),
         needs(has_selection, NO_SPHERE), also("remove ball");
-    SkyColours "Sky colours…", "Changes the two colours that the sky fades between",
+    SkyColours "Sky colours", "Changes the two colours that the sky fades between",
         off(|f| f.no_rays().map(str::to_owned)), also("background light gradient");
     Home "Reset the camera", "Returns to the camera and lens of the stage", key(Key::Home), line(),
         needs(|f| f.document().camera != f.document().origin.recipe.camera, "This is the camera of the stage"),
@@ -251,7 +251,7 @@ table! {
             "This picture already has the book’s arithmetic, or traces no rays"),
         on(|f| f.model.view.mode().is_some() && f.model.view.with() == With::Book),
         also("rounding f64 precision");
-    ListPaths "Paths of a pixel", "Shows the paths of the pixel under the pointer, ray by ray", key(Key::T),
+    ListPaths "Paths of this pixel", "Shows the paths of the pixel under the pointer, ray by ray", key(Key::T),
         line(), off(|f| match f.no_rays() {
             Some(reason) => Some(reason.to_owned()),
             None if !is_live(f) => Some(KEPT_IS_SHOWN.to_owned()),
@@ -310,6 +310,7 @@ table! {
         "Renders one pixel of the picture per pixel of the screen; the samples begin anew", unlisted();
     StopSaving "Stop", "Gives up this render", unlisted();
     Recover "Resume", "Shows it, and adds more samples", unlisted();
+    DeleteLeft "Delete it", "Deletes what the last window has left", unlisted();
     WholeCompanion "Render it in full quality",
         "Renders its pictures at full size and without noise, which takes some minutes", unlisted();
     StopCompanion "Stop", "Leaves out the pictures that are missing", unlisted();

@@ -4,7 +4,7 @@ use super::outcome::{Outcome, Purpose, What};
 use crate::app::commands::Snapshot;
 use crate::app::model::Document;
 use crate::app::panels::status::time;
-use crate::app::toolkit::widgets::{About, FIELD, Number, named, primary, small};
+use crate::app::toolkit::widgets::{About, FIELD, Number, hint, named, primary, small};
 use crate::app::toolkit::{Answers, theme};
 use crate::film::Film;
 use crate::job::recipe::plain_name;
@@ -75,8 +75,13 @@ impl PathField {
         let field = ui.add(field.hint_text("File name; or drop the file on the window"));
         named(&field, "File name");
         focus(ui, &field, &self.text);
-        match buttons(ui, &field, "Open", !self.text.trim().is_empty()) {
-            Some(true) => Outcome::Named(self.purpose, self.folder.join(self.text.trim())),
+        let path = self.folder.join(self.text.trim());
+        // A path that is mistyped is not lost.
+        let is_missing = !self.text.trim().is_empty() && !path.exists();
+        let words = if is_missing { "There is no file of this name." } else { "" };
+        hint(ui, words);
+        match buttons(ui, &field, "Open", !self.text.trim().is_empty() && !is_missing) {
+            Some(true) => Outcome::Named(self.purpose, path),
             Some(false) => Outcome::Close,
             None => Outcome::Stay,
         }
@@ -184,9 +189,16 @@ impl SaveBox {
         let (path, shown) = (self.path(), snapshot.document());
         let size = self.pixels(self.size, shown);
         let (is_replaced, has_folder) = (path.exists(), path.parent().is_none_or(Path::is_dir));
+        let (free, mut replaces) = (free_path(&path), false);
         match has_folder {
             _ if is_replaced => {
-                ui.colored_label(theme::colours(ui).warn, "A file of this name is there already.")
+                ui.horizontal(|ui| {
+                    let name = free.file_name().unwrap_or_default().display();
+                    let words = format!("It is there already; Save makes \u{201c}{name}\u{201d}.");
+                    ui.colored_label(theme::colours(ui).warn, words);
+                    replaces = ui.button("Replace").clicked();
+                })
+                .response
             }
             false => ui.weak("The folder will be created."),
             true if self.what != What::Scene && shown.size() != size => {
@@ -195,8 +207,9 @@ impl SaveBox {
             true => ui.label(""),
         };
         let is_usable = !self.name.trim().is_empty() && !path.is_dir();
-        match buttons(ui, &field, if is_replaced { "Replace" } else { "Save" }, is_usable) {
-            Some(true) => Outcome::Save(self.what, size, path),
+        match buttons(ui, &field, "Save", is_usable) {
+            _ if replaces && is_usable => Outcome::Save(self.what, size, path),
+            Some(true) => Outcome::Save(self.what, size, free),
             Some(false) => Outcome::Close,
             None => Outcome::Stay,
         }
@@ -205,7 +218,7 @@ impl SaveBox {
     fn sizes(&mut self, ui: &mut Ui, snapshot: &Snapshot) {
         small(ui, "Size");
         for (size, label) in [
-            (Size::Seen, "As you see it"),
+            (Size::Seen, "As it is rendered"),
             (Size::Book, "As in the book"),
             (Size::Twice, "Twice as large"),
             (Size::Other, "Other"),
@@ -242,6 +255,14 @@ fn choose(purpose: Purpose, from: &Path) -> Option<PathBuf> {
         Purpose::Folder => return dialog.pick_folder(),
     };
     dialog.add_filter(endings.join(", "), endings).pick_file()
+}
+
+/// The path, or the first with a number after its name where no file is.
+fn free_path(path: &Path) -> PathBuf {
+    let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().display().to_string();
+    let (stem, ending) = (part(path.file_stem()), part(path.extension()));
+    let numbered = (2_u32..).map(|number| path.with_file_name(format!("{stem} {number}.{ending}")));
+    std::iter::once(path.to_owned()).chain(numbered).find(|path| !path.exists()).unwrap_or_default()
 }
 
 /// A label, and what follows it over the rest of the width, from the right to the left.

@@ -8,6 +8,9 @@ use eframe::egui::{Context, Frame, Margin, RichText, ScrollArea, Sides, Ui};
 
 const GROUPS: [&str; 8] = ["The picture", "Camera", "File", "Edit", "View", "Render", "Stage", "Other"];
 
+/// From this width on there are two columns, points.
+const TWO_COLUMNS: f32 = 640.0;
+
 /// Mouse actions, and keys that belong to no single command: group, words and keys.
 const MOUSE: [(&str, &str, &str); 18] = [
     ("The picture", "Zoom at the pointer", "Ctrl and wheel"),
@@ -52,11 +55,16 @@ pub(super) fn ui(ui: &mut Ui, height: f32) -> Outcome {
     ui.heading("Keys and mouse");
     let area = ScrollArea::vertical().max_height(height).min_scrolled_height(height);
     area.auto_shrink(false).show(ui, |ui| {
-        ui.spacing_mut().item_spacing.y = 0.0;
-        for title in GROUPS {
-            caption(ui, title);
-            rows(title, ui.ctx()).iter().for_each(|(what, keys)| row_ui(ui, what, keys));
-        }
+        let (count, half) = if ui.available_width() < TWO_COLUMNS { (1, GROUPS.len()) } else { (2, 4) };
+        ui.columns(count, |columns| {
+            for (ui, groups) in columns.iter_mut().zip(GROUPS.chunks(half)) {
+                ui.spacing_mut().item_spacing.y = 0.0;
+                for title in groups {
+                    caption(ui, title);
+                    rows(title, ui.ctx()).iter().for_each(|(what, keys)| row_ui(ui, what, keys));
+                }
+            }
+        });
     });
     if ui.button("Close").clicked() { Outcome::Close } else { Outcome::Stay }
 }

@@ -3,9 +3,9 @@
 mod about;
 mod files;
 mod help;
+mod leave;
 mod outcome;
 mod palette;
-mod sky;
 pub mod stage_list;
 
 pub use files::{LargeSize, PathField, SaveBox, default_folder, file_name, samples_wanted};
@@ -23,8 +23,6 @@ pub enum Dialog {
     Stages(Finder),
     /// Keys and mouse.
     Help,
-    /// The colours of the sky.
-    Sky,
     /// Version and licences.
     About,
     /// Saving the picture, the film or the scene.
@@ -33,6 +31,8 @@ pub enum Dialog {
     Path(PathField),
     /// A size that needs much memory or time.
     Large(LargeSize),
+    /// The window is to be closed, but a picture for a file of this name is still rendered.
+    Leave(String),
 }
 
 /// The open dialog, and the system's file dialog.
@@ -67,18 +67,19 @@ impl Dialogs {
             modal = modal.backdrop_color(Color32::TRANSPARENT);
         }
         let modal = modal.show(ui.ctx(), |ui| {
-            ui.set_max_width((room.x - 64.0).min(512.0));
+            let widest = if matches!(dialog, Dialog::Help) { 880.0 } else { 512.0 };
+            ui.set_max_width((room.x - 64.0).min(widest));
             match dialog {
                 Dialog::Palette(finder) => palette::ui(finder, ui, (room.y - 180.0).clamp(100.0, 360.0), cx),
                 Dialog::Stages(finder) => {
                     stage_list::ui(finder, ui, (room.y - 140.0).clamp(160.0, 720.0), cx)
                 }
                 Dialog::Help => help::ui(ui, (room.y - 200.0).clamp(100.0, 560.0)),
-                Dialog::Sky => sky::ui(ui, cx),
                 Dialog::About => about::ui(ui, cx),
                 Dialog::Save(save) => save.ui(ui, cx, &mut self.system),
                 Dialog::Path(field) => field.ui(ui),
                 Dialog::Large(large) => large.ui(ui),
+                Dialog::Leave(name) => leave::ui(name, ui),
             }
         });
         if modal.should_close() || !matches!(modal.inner, Outcome::Stay) {

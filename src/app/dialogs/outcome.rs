@@ -13,6 +13,10 @@ pub enum Outcome {
     Save(What, [u32; 2], PathBuf),
     /// It closes: the picture gets this size.
     Size([u32; 2]),
+    /// It closes, and so does the window, at once or when everything is saved.
+    Leave {
+        saves: bool,
+    },
 }
 
 /// The content to save.

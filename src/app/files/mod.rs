@@ -2,6 +2,7 @@
 //! separate thread reads. A size that is not on the screen is rendered first, beside the picture.
 
 pub mod autosave;
+pub mod edits;
 pub mod scene_file;
 
 use crate::app::commands::Command;
@@ -20,6 +21,7 @@ use crate::page::companion;
 use crate::progressive::describe::describe;
 use crate::progressive::{Phase, Plan, Progressive, RenderRequest, Status, Stop};
 use crate::render_cpu::CpuOptions;
+use crate::system::console;
 use crate::system::files::{cache_directory, replace_file};
 use crate::system::interrupt::Interrupt;
 use eframe::egui::{ColorImage, Context};
@@ -102,7 +104,32 @@ impl Files {
     }
 
     pub fn stop_saving(&mut self) {
-        self.sized = None;
+        (self.sized, self.pending_save) = (None, None);
+    }
+
+    /// The name of the file that is saved once its picture has been rendered.
+    pub fn unsaved(&self) -> Option<String> {
+        let path = self.sized.as_ref().map(|sized| &sized.named.1);
+        let path = path.or(self.pending_save.as_ref().map(|(_, path)| path))?;
+        Some(path.file_name().unwrap_or(path.as_os_str()).display().to_string())
+    }
+
+    /// Whether something is still rendered to be saved, or written.
+    pub fn is_saving(&self) -> bool {
+        self.unsaved().is_some() || self.saved.is_open()
+    }
+
+    /// Waits for the files that are being written, at the end of the window.
+    pub fn end(&mut self) {
+        if let Some(name) = self.unsaved() {
+            console::note(&format!("weekender: {name} was not saved: its picture was still being rendered"));
+        }
+        while let Some(outcome) = self.saved.wait() {
+            outcome
+                .err()
+                .into_iter()
+                .for_each(|reason| console::note(&format!("weekender: not saved: {reason}")));
+        }
     }
 
     /// Reports how far the picture is that is rendered to be saved, and saves it at the end.
@@ -225,9 +252,14 @@ impl Files {
     /// Reads a scene file, picture or film.
     pub fn open(&mut self, context: &Context, path: PathBuf) {
         let work = move || match saved::open(&path) {
+            Err(_) if !path.exists() => {
+                let [name, folder] = [path.file_name(), path.parent().map(Path::as_os_str)]
+                    .map(|part| part.unwrap_or_default().display().to_string());
+                Err(format!("there is no file {name} in {folder}"))
+            }
             Ok(opened) => Ok(Ok(opened)),
-            Err(OpenError::Picture(_)) if path.exists() && is_named_picture(&path) => Ok(Err(path)),
-            Err(OpenError::Picture(_)) if path.exists() => {
+            Err(OpenError::Picture(_)) if is_named_picture(&path) => Ok(Err(path)),
+            Err(OpenError::Picture(_)) => {
                 Err(format!("{} is not a picture, film or scene (PNG, PPM, EXR, TOML)", path.display()))
             }
             Err(error) => Err(error.to_string()),

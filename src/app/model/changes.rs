@@ -33,6 +33,21 @@ impl Changes {
         Changes { done, undone, last: document, moved: None, has_moved: false, is_in_gesture: false }
     }
 
+    /// A history of these documents, oldest first; `shown` is the last one.
+    pub fn of_steps(steps: &[Document], shown: Document) -> Self {
+        let mut changes = Changes::new(steps.first().unwrap_or(&shown).clone());
+        steps.iter().for_each(|step| end_step(&mut changes.done, step));
+        Changes { last: shown, ..changes }
+    }
+
+    /// The document, and at most `count` states before it, oldest first.
+    pub fn last_steps(&self, document: &Document, count: usize) -> Vec<Document> {
+        let mut done = self.done.clone();
+        end_step(&mut done, document);
+        done.drain(..done.len().saturating_sub(count + 1));
+        done.into()
+    }
+
     /// What undo and redo would change, in words.
     pub fn labels(&self, document: &Document) -> [Option<&'static str>; 2] {
         [self.earlier(document), self.later(document)].map(|other| Some(document.difference(other?)))

@@ -96,12 +96,13 @@ impl Document {
         let [settings, of_other] =
             [&self.settings, &other.settings].map(|of| RenderSettings { width: 0, height: 0, ..*of });
         if !Arc::ptr_eq(&self.origin, &other.origin) {
-            "another picture"
+            "change of picture"
         } else if !Arc::ptr_eq(&self.checked, &other.checked) {
             match self.scene().spheres.len().cmp(&other.scene().spheres.len()) {
                 std::cmp::Ordering::Equal if self.scene().sky != other.scene().sky => "sky",
                 std::cmp::Ordering::Equal => "sphere",
-                _ => "number of spheres",
+                std::cmp::Ordering::Greater => "added sphere",
+                std::cmp::Ordering::Less => "deleted sphere",
             }
         } else if mine.vfov_degrees != theirs.vfov_degrees {
             "field of view"
@@ -254,7 +255,8 @@ impl Document {
         }
         let stop = self.stop;
         match reason {
-            EndReason::NoiseTarget => {
+            // A denoised picture ends with fewer samples than its goal for the raw one needs.
+            EndReason::NoiseTarget | EndReason::Samples if stop.noise.is_some() && stop.samples.is_none() => {
                 let reached = status.error.map_or(f64::INFINITY, |error| error.rmse).min(stop.noise?);
                 let halves = std::iter::successors(stop.noise, |noise| Some(noise / 2.0));
                 let next = halves.take_while(|noise| *noise > 1e-6).find(|noise| *noise < 0.55 * reached);
@@ -268,7 +270,7 @@ impl Document {
                 let seconds = 2.0 * stop.seconds?.max(status.elapsed.as_secs_f64().floor());
                 Some(Stop { seconds: Some(seconds), ..stop })
             }
-            EndReason::Stopped => None,
+            EndReason::NoiseTarget | EndReason::Stopped => None,
         }
     }
 

@@ -35,6 +35,15 @@ pub enum Edit {
     Sky(Sky),
 }
 
+/// A kind of material as the panel calls it.
+pub fn kind_word(material: &Material) -> &'static str {
+    match material {
+        Material::Lambertian { .. } => "matte",
+        Material::Metal { .. } => "metal",
+        Material::Dielectric { .. } => "glass",
+    }
+}
+
 /// The name of the material of a sphere that was added.
 const ADDED: &str = "added";
 
@@ -68,9 +77,10 @@ fn change(scene: &mut Scene, index: usize, body: Body) -> Option<()> {
     let place = scene.spheres.get(index)?.material;
     let NamedMaterial { name, material } = scene.materials.get(place)?.clone();
     if material != body.material {
-        // Another kind of material also gets another name: "glass" would be a strange name for a metal.
-        let is_same_kind = material.kind() == body.material.kind();
-        let name = if is_same_kind { name } else { free_name(scene, body.material.kind()) };
+        // A name that tells another kind would be a strange one.
+        let is_of_kind =
+            kind_word(&material) != kind_word(&body.material) && name.starts_with(kind_word(&material));
+        let name = if is_of_kind { free_name(scene, kind_word(&body.material)) } else { name };
         if is_shared(scene, place) {
             let name = free_name(scene, &name);
             scene.spheres[index].material = scene.add_material(name, body.material);
@@ -214,6 +224,9 @@ mod tests {
         after.validate().unwrap();
         assert_eq!((Body::of(&after, 2), Body::of(&after, 1)), (Some(body), Body::of(&before, 1)));
         assert_eq!(names(&after), ["grey", "glass", "metal", "metal-2"]);
+        // A name that says nothing of the kind stays.
+        let body = Body { material: METAL, ..Body::of(&before, 0).unwrap() };
+        assert_eq!(names(&Edit::Change(0, body).apply(&before).0), ["grey", "glass"]);
     }
 
     #[test]

@@ -89,8 +89,16 @@ impl KeptList {
 
     /// As a kept picture is called in sentences.
     pub fn title(&self, kept: &Kept) -> String {
-        let place = self.pictures.iter().position(|other| other.number == kept.number).unwrap_or_default();
-        format!("{}: {}", place + 1, kept.document.title())
+        format!("{}: {}", self.place(kept) + 1, kept.document.title())
+    }
+
+    /// As a kept picture is called where there is little room.
+    pub fn short_title(&self, kept: &Kept) -> String {
+        format!("kept {}", self.place(kept) + 1)
+    }
+
+    fn place(&self, kept: &Kept) -> usize {
+        self.pictures.iter().position(|other| other.number == kept.number).unwrap_or_default()
     }
 
     /// The place of the picture that commands mean.

@@ -22,7 +22,7 @@ pub use checked::{CheckedScene, stamp_of};
 pub use companion::file_url;
 pub use device::{Device, DeviceOptions, adapter, best_isa, core_count, lane_counts};
 pub use document::Document;
-pub use edit::{Body, Edit};
+pub use edit::{Body, Edit, kind_word};
 pub use kept::{Kept, KeptList};
 pub use origin::{Origin, Source};
 pub use remembered::{Bookmark, Dock, Remembered, Stored, Tab};

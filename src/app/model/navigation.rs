@@ -76,7 +76,12 @@ pub fn at_depth(camera: &Camera, place: [f64; 2], aspect: f64) -> DVec3 {
 pub fn fly(camera: &Camera, by: DVec3) -> Camera {
     let basis = camera.basis();
     let offset = by.x * basis.u + by.y * basis.v - by.z * basis.w;
-    kept(camera, Camera { look_from: camera.look_from + offset, look_at: camera.look_at + offset, ..*camera })
+    // What is in focus stays so.
+    let is_lens = camera.defocus_angle_degrees > 0.0;
+    let focused =
+        Some(camera.effective_focus_distance() - by.z).filter(|distance| is_lens && *distance > 0.0);
+    let (look_from, look_at) = (camera.look_from + offset, camera.look_at + offset);
+    kept(camera, Camera { look_from, look_at, focus_distance: focused.or(camera.focus_distance), ..*camera })
 }
 
 /// Looks at `point` from the current position.
@@ -140,6 +145,9 @@ mod tests {
         let flown = fly(&CAMERA, DVec3::new(1.0, 2.0, 3.0));
         close(flown.look_from, DVec3::new(1.0, 2.0, 1.0));
         close(flown.look_at, DVec3::new(1.0, 2.0, -3.0));
+        let lens = Camera { defocus_angle_degrees: 1.0, ..CAMERA };
+        let distances = [1.0, -2.0, 9.0].map(|forward| fly(&lens, DVec3::Z * forward).focus_distance);
+        assert_eq!(distances, [Some(3.0), Some(6.0), None], "what is in focus stays so, unless it is passed");
         assert_eq!(focus(&CAMERA, DVec3::new(9.0, 9.0, 1.0)).focus_distance, Some(3.0));
         assert_eq!(recentre(&CAMERA, CAMERA.look_from), CAMERA, "no direction: not made");
         assert_eq!(focus(&CAMERA, DVec3::new(0.0, 0.0, 5.0)), CAMERA, "behind the eye: not made");

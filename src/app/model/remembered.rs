@@ -112,6 +112,15 @@ impl Stored {
     pub fn write(remembered: Remembered, view: ViewState, storage: &mut dyn Storage) {
         eframe::set_value(storage, Stored::KEY, &Stored { version: Stored::VERSION, remembered, view });
     }
+
+    /// The next window does not begin in full screen, where one would look for its title bar in vain.
+    pub fn forget_full_screen(storage: &mut dyn Storage) {
+        /// eframe's own entry, in RON.
+        const WINDOW: &str = "window";
+        if let Some(window) = storage.get_string(WINDOW) {
+            storage.set_string(WINDOW, window.replace("fullscreen:true", "fullscreen:false"));
+        }
+    }
 }
 
 impl Remembered {

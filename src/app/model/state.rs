@@ -4,6 +4,7 @@ use super::{Device, DeviceOptions, Document, Mode, Remembered, Show, Tab, ViewSt
 use crate::backends::BackendChoice;
 use crate::progressive::Stop;
 use crate::stages::{Shading, Stage};
+use std::sync::Arc;
 
 /// A presentation: full screen, the picture with large captions, no panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +38,8 @@ pub struct Model {
     pub is_full_screen: bool,
     /// Whether the card with the first steps is shown.
     pub has_first_steps: bool,
+    /// Which of them were done: the camera moved, a sphere selected, another picture opened.
+    pub steps_done: [bool; 3],
     /// The presentation in progress.
     pub presentation: Option<Presentation>,
 }
@@ -50,6 +53,13 @@ impl Model {
     /// Whether the right panel shows this tab.
     pub fn shows(&self, tab: Tab) -> bool {
         self.has_panels() && self.remembered.has_info && self.remembered.tab == tab
+    }
+
+    /// Notes which of the first steps were done since the document was as `before`.
+    pub fn note_steps(&mut self, before: &Document) {
+        let is_same = Arc::ptr_eq(&self.document.origin, &before.origin);
+        let done = [is_same && self.document.camera != before.camera, self.selected.is_some(), !is_same];
+        self.steps_done.iter_mut().zip(done).for_each(|(step, is_done)| *step |= is_done);
     }
 
     /// The backend for the chosen device, lanes and threads.

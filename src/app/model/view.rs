@@ -3,7 +3,7 @@
 use super::{CheckedScene, Document, Kept, KeptList, Origin, Show, Tone};
 use crate::denoise::Denoised;
 use crate::job::recipe::Recipe;
-use crate::progressive::{ReferenceMeans, View};
+use crate::progressive::{ReferenceMeans, Stop, View};
 use crate::stages::Stage;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -198,6 +198,16 @@ impl ViewState {
         match &self.denoised {
             Some((of, Ok(denoised))) if self.is_denoised && *of == run => Some(denoised),
             _ => None,
+        }
+    }
+
+    /// When the render of this run ends that should end at `stop`: as soon as the picture that is shown has the error of
+    /// its goal.
+    pub fn stop(&self, run: u64, stop: Stop) -> Stop {
+        let reached = self.denoised_of(run).zip(stop.noise);
+        match reached.filter(|(denoised, goal)| denoised.error.rmse() <= *goal) {
+            Some((denoised, _)) => Stop { samples: Some(denoised.film.sample_count()), ..stop },
+            None => stop,
         }
     }
 

@@ -33,6 +33,7 @@ pub fn ui(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx:
         lens(ui, document);
         sphere(ui, document, cx);
         panel_line(ui);
+        sky(ui, document, cx);
     }
     ui.spacing_mut().item_spacing.y = 0.0;
     size_and_samples(ui, document, remembered, cx);
@@ -144,6 +145,22 @@ fn sphere(ui: &mut Ui, document: &mut Document, cx: &PanelContext) {
     }
 }
 
+/// The only lamp of the book.
+fn sky(ui: &mut Ui, document: &Document, cx: &PanelContext) {
+    let (mut sky, own) = (document.scene().sky, document.origin.recipe.scene.sky);
+    let reset = (sky != own).then_some("Reset sky");
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let is_reset = fold(ui, Header { title: "Sky", reset, ..Header::default() }, false, |ui| {
+        colour(ui, About::new("Overhead", "The light from straight above"), &mut sky.top);
+        let help = "The light from straight below, which fades upwards";
+        colour(ui, About::new("At the horizon", help), &mut sky.bottom);
+    });
+    let sky = if is_reset { own } else { sky };
+    if sky != document.scene().sky {
+        cx.edit(Edit::Sky(sky));
+    }
+}
+
 /// The values of the sphere after this frame.
 fn body(ui: &mut Ui, selected: &Selected, document: &Document) -> Body {
     let mut body = selected.body;
@@ -241,13 +258,27 @@ fn sizing(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx:
             }
         }
     });
-    let mut size = document.size();
+    let before = document.size();
+    let mut size = before;
     for (name, pixels) in ["Width", "Height"].into_iter().zip(&mut size) {
         whole(ui, About::new(name, "Pixels"), pixels, 1..=SIZE_LIMIT, 64.0);
     }
-    if size != document.size() {
-        document.give_size(size);
+    let place = ui.scope_id().with("keeps its shape");
+    let mut keeps = ui.data(|data| data.get_temp(place)).unwrap_or(true);
+    check(ui, About::new("Keep the shape", "Width and height change together"), &mut keeps);
+    ui.data_mut(|data| data.insert_temp(place, keeps));
+    if size != before {
+        document.give_size(if keeps { in_shape(before, size) } else { size });
     }
+}
+
+/// A size of the shape of `before`, one side of which was changed.
+fn in_shape(before: [u32; 2], size: [u32; 2]) -> [u32; 2] {
+    let axis = usize::from(size[0] == before[0]);
+    let factor = f64::from(size[axis]) / f64::from(before[axis]);
+    // The other side has limits, too.
+    let most = f64::from(SIZE_LIMIT) / f64::from(before[1 - axis]);
+    before.map(|side| ((f64::from(side) * factor.min(most)).round() as u32).max(1))
 }
 
 /// A row for a whole number.

@@ -4,7 +4,7 @@ use crate::app::commands::{Command, PanelContext};
 use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{command_button, primary, sign_button, tip};
 use crate::stages::Stage;
-use eframe::egui::{self, Frame, Label, Margin, RichText, Sides, Stroke, Ui};
+use eframe::egui::{self, Frame, Label, Margin, RichText, Role, Sides, Stroke, Ui, WidgetInfo, vec2};
 
 /// Narrower cards are higher, points.
 const WIDE: f32 = 620.0;
@@ -12,7 +12,7 @@ const WIDE: f32 = 620.0;
 const STEPS: [&str; 3] = [
     "Drag the picture to look around it. Home returns.",
     "Click a sphere, then drag it or change its material.",
-    "Page Down and Page Up turn the pages of the book.",
+    "Page Up and Page Down turn the pages of the book.",
 ];
 
 /// Draws the card, if it is shown, at the bottom of `ui`.
@@ -21,7 +21,7 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
         return;
     }
     let is_wide = ui.available_width() >= WIDE;
-    let height = if is_wide { 140.0 } else { 168.0 };
+    let height = if is_wide { 148.0 } else { 176.0 };
     if ui.available_height() < 2.0 * height {
         // The picture comes first.
         return;
@@ -60,10 +60,10 @@ fn content(ui: &mut Ui, is_wide: bool, cx: &PanelContext) {
         },
     );
     ui.columns(STEPS.len(), |uis| {
-        uis.iter_mut().enumerate().for_each(|(number, ui)| step(ui, number));
+        uis.iter_mut().enumerate().for_each(|(number, ui)| step(ui, number, cx.model.steps_done[number]));
     });
     ui.horizontal(|ui| {
-        if let Some(first) = Stage::ALL.first() {
+        if let Some(first) = Stage::ALL.first().filter(|first| cx.document().stage() != Some(first)) {
             let response = ui.add(primary(format!("Start the book at {}", first.section)));
             if tip(ui, response, first.what_is_new, None).clicked() {
                 cx.send(Command::Stage(first));
@@ -73,12 +73,19 @@ fn content(ui: &mut Ui, is_wide: bool, cx: &PanelContext) {
     });
 }
 
-/// A step behind its number.
-fn step(ui: &mut Ui, number: usize) {
+/// A step behind its number, or behind a tick once it was done.
+fn step(ui: &mut Ui, number: usize, is_done: bool) {
     ui.horizontal_top(|ui| {
         let text = |text: RichText| Label::new(text.line_height(Some(20.0))).wrap();
         let accent = theme::colours(ui).accent;
-        ui.add(text(RichText::new((number + 1).to_string()).strong().color(accent)));
+        let number_ui = ui.add(text(RichText::new((number + 1).to_string()).strong().color(accent)));
+        if is_done {
+            let (at, stroke) = (number_ui.rect.center(), Stroke::new(2.0, theme::colours(ui).good));
+            ui.painter().rect_filled(number_ui.rect, 0.0, theme::colours(ui).panel);
+            let tick = [vec2(-5.0, 0.0), vec2(-1.0, 4.0), vec2(5.0, -5.0)].map(|to| at + to);
+            ui.painter().line(tick.to_vec(), stroke);
+            number_ui.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{}, done", number + 1)));
+        }
         ui.add(text(RichText::new(STEPS[number])));
     });
 }

@@ -8,7 +8,8 @@ use crate::numbers::statistics::fit::{Point, Prediction, predict};
 use crate::progressive::{HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, Status};
 use eframe::egui::{self, Rangef, Sense, Sides, Ui, Vec2b};
 use egui_plot::{
-    AxisHints, HLine, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints, Points, uniform_grid_spacer,
+    AxisHints, Corner, HLine, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints, Points,
+    uniform_grid_spacer,
 };
 
 /// Predictions more than this many seconds ahead are not shown.
@@ -61,7 +62,7 @@ fn plot(ui: &mut Ui, goal: Option<f64>, status: &Status) {
         hints.label(egui::RichText::new(name).small()).formatter(|mark, _| power(mark.value))
     };
     let plot = Plot::new("error")
-        .legend(Legend::default())
+        .legend(Legend::default().position(Corner::LeftBottom))
         .allow_drag(false)
         .allow_zoom(Vec2b::FALSE)
         .allow_scroll(false)

@@ -88,11 +88,20 @@ pub fn enlarge(context: &Context, style: &mut Style) {
     }
 }
 
-/// The numbers of the pixel under the pointer, in a lower corner of the viewport away from it.
-pub fn magnify(ui: &Ui, room: Rect, pointer: Pos2, numbers: impl FnOnce(&mut Ui)) {
+/// The numbers of the pixel under the pointer, in a corner of the viewport away from it.
+pub fn magnify(ui: &Ui, room: Rect, pointer: Pos2, has_scale: bool, numbers: impl FnOnce(&mut Ui)) {
     let unit = unit(ui.ctx());
-    let is_left = pointer.x > room.center().x || pointer.y < room.center().y;
-    let corner = if is_left { Align2::LEFT_BOTTOM } else { Align2::RIGHT_BOTTOM };
+    let is_near = |corner: Align2| {
+        let away = (pointer - corner.pos_in_rect(&room)).abs() / room.size();
+        away.x < 0.5 && away.y < 0.5
+    };
+    // A scale is at the lower left.
+    let corners = if has_scale {
+        [Align2::RIGHT_BOTTOM, Align2::RIGHT_TOP]
+    } else {
+        [Align2::LEFT_BOTTOM, Align2::RIGHT_BOTTOM]
+    };
+    let corner = if is_near(corners[0]) { corners[1] } else { corners[0] };
     let area = egui::Area::new(egui::Id::unique("magnifier")).pivot(corner).interactable(false);
     area.fixed_pos(corner.pos_in_rect(&room.shrink(MARGIN * unit))).show(ui.ctx(), |ui| {
         enlarge(&ui.ctx().clone(), ui.style_mut());

@@ -42,7 +42,7 @@ pub fn paragraph(ui: &mut Ui, heading: &str, text: &str) {
 }
 
 fn stage_ui(ui: &mut Ui, stage: &Stage, cx: &PanelContext) {
-    title(ui, &format!("{} {}", stage.chapter(), stage.chapter_title()), stage.title);
+    title(ui, &format!("{} {}", stage.section, stage.section_title()), stage.title);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 16.0;
         let book = format!("{} in the book", stage.section);

@@ -108,13 +108,17 @@ pub fn sentence(snapshot: &Snapshot) -> String {
         return checked.clone();
     }
     let count = status.samples_per_pixel;
-    let error = match (status.error, denoised_error(snapshot)) {
+    let raw = status.error.map(|raw| percent(raw.rmse, raw.rmse_deviation));
+    let error = match (raw, denoised_error(snapshot)) {
         (Some(raw), Some(Ok(error))) => {
-            let [rmse, deviation, raw] = [error.rmse(), error.rmse_deviation(), raw.rmse].map(percent);
+            // Both to the first digit of the deviation.
+            let [rmse, deviation] = [error.rmse(), error.rmse_deviation()].map(|error| 100.0 * error);
+            let places = places(deviation, 1);
+            let [rmse, deviation] = [rmse, deviation].map(|percent| to_places(percent, places));
             format!(", denoised: error {rmse} ± {deviation} (raw {raw})")
         }
-        (Some(raw), Some(Err(reason))) => format!(", error {} (not denoised: {reason})", percent(raw.rmse)),
-        (Some(raw), None) => format!(", error {}", percent(raw.rmse)),
+        (Some(raw), Some(Err(reason))) => format!(", error {raw} (not denoised: {reason})"),
+        (Some(raw), None) => format!(", error {raw}"),
         (None, _) => String::new(),
     };
     let samples = format!("{} samples per pixel", grouped(count));
@@ -160,8 +164,12 @@ fn denoised_error(snapshot: &Snapshot) -> Option<Result<DenoisedError, &str>> {
 /// When a render without a number of samples will end.
 fn ending(snapshot: &Snapshot) -> String {
     let (status, stop) = (&*snapshot.status, snapshot.document().stop);
-    if let Some((target, found)) = stop.noise.zip(prediction(status, stop.noise)) {
-        format!("; {} in about {}", percent(target), time(found.time))
+    let goal = stop.noise.map(|goal| format!("{} %", compact(100.0 * goal)));
+    if let Some(goal) = goal.as_ref().filter(|_| matches!(denoised_error(snapshot), Some(Ok(_)))) {
+        // Nothing tells when the denoised picture will be so good.
+        format!("; until {goal}")
+    } else if let Some((goal, found)) = goal.zip(prediction(status, stop.noise)) {
+        format!("; {goal} in about {}", time(found.time))
     } else if let Some(end) = stop.seconds {
         format!("; done in {}", time(end - status.elapsed.as_secs_f64()))
     } else {
@@ -177,8 +185,10 @@ pub fn share(snapshot: &Snapshot) -> Option<f64> {
     }
     let of_samples = stop.samples.map(|end| status.samples_per_pixel as f64 / end.max(1) as f64);
     let of_time = stop.seconds.map(|end| status.elapsed.as_secs_f64() / end);
-    // The error falls with the root of the samples.
-    let of_error = stop.noise.zip(status.error).map(|(end, error)| (end / error.rmse).powi(2));
+    // The error falls with the root of the samples; that of a denoised picture is not followed.
+    let is_raw = denoised_error(snapshot).is_none();
+    let of_error = stop.noise.zip(status.error).filter(|_| is_raw);
+    let of_error = of_error.map(|(end, error)| (end / error.rmse).powi(2));
     [of_samples, of_time, of_error].into_iter().flatten().reduce(f64::max).map(|share| share.clamp(0.0, 1.0))
 }
 
@@ -196,7 +206,7 @@ fn details(ui: &mut Ui, snapshot: &Snapshot) {
                     ui.horizontal(|ui| {
                         small(ui, name);
                         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                            ui.add(Label::new(RichText::new(value).small()).truncate());
+                            ui.add(Label::new(RichText::new(value).small()).wrap());
                         });
                     });
                 }
@@ -222,7 +232,7 @@ fn figures(snapshot: &Snapshot) -> Vec<(&'static str, String)> {
         ("Speed", if has_paths { format!("{speed:.1} million paths per second") } else { unknown() }),
         ("Rays per path", if has_paths { format!("{rays:.1} on average") } else { unknown() }),
         ("Processor", processors(status).unwrap_or_else(unknown)),
-        ("Lanes", lanes.unwrap_or_else(unknown)),
+        ("Lanes of the CPU", lanes.unwrap_or_else(unknown)),
         ("Memory of this picture", format!("{:.1} MB", bytes as f64 / 1e6)),
     ]
 }
@@ -248,11 +258,19 @@ fn processor(BackendInfo { name, device, threads, .. }: &BackendInfo) -> String 
     }
 }
 
-/// An error in per cent of white, with two digits below one.
-fn percent(error: f64) -> String {
-    let percent = 100.0 * error;
-    let places = if percent > 0.0 { (-percent.log10()).ceil().clamp(1.0, 6.0) as usize } else { 0 };
-    format!("{} %", compact(format!("{percent:.places$}").parse().unwrap_or(percent)))
+/// An error in per cent of white, with the digits that it is sure of, two at most.
+fn percent(error: f64, deviation: f64) -> String {
+    let digits = if deviation > 0.1 * error { 1 } else { 2 };
+    to_places(100.0 * error, places(100.0 * error, digits))
+}
+
+/// The decimal places of so many digits of a number.
+fn places(value: f64, digits: i32) -> usize {
+    if value > 0.0 { (digits - 1 - value.log10().floor() as i32).clamp(0, 6) as usize } else { 0 }
+}
+
+fn to_places(percent: f64, places: usize) -> String {
+    format!("{percent:.places$} %")
 }
 
 /// Seconds in words.
@@ -287,7 +305,11 @@ mod tests {
         };
         snapshot.status = Arc::new(status.clone());
         snapshot.model.document.stop.noise = Some(0.002);
-        assert!(sentence(&snapshot).ends_with("error 0.4 %; 0.2 % in about 30 s"), "{}", sentence(&snapshot));
+        assert!(
+            sentence(&snapshot).ends_with("error 0.40 %; 0.2 % in about 30 s"),
+            "{}",
+            sentence(&snapshot)
+        );
         assert_eq!(share(&snapshot), Some(0.25));
         snapshot.is_coarse = true;
         assert!(sentence(&snapshot) == "Starting" && share(&snapshot).is_none());
@@ -304,6 +326,9 @@ mod tests {
             sentence(&snapshot)
         );
         assert_eq!(share(&snapshot), None);
+        let errors = [(0.00123, 0.0), (0.00123, 0.001), (0.0456, 0.0), (0.3, 0.0)];
+        let words = errors.map(|(error, deviation)| percent(error, deviation));
+        assert_eq!(words, ["0.12 %", "0.1 %", "4.6 %", "30 %"]);
         assert_eq!([4.2, 72.0, 7500.0, 1e6].map(time), ["4 s", "1 min 12 s", "2 h 5 min", "more than a day"]);
     }
 }

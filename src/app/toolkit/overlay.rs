@@ -29,7 +29,9 @@ pub fn wipe(
     }
     over.image(left, place, WHOLE, Color32::WHITE);
     let seen = rect.intersect(painter.clip_rect());
-    paint_divider(painter, seen, x);
+    if divider < 1.0 {
+        paint_divider(painter, seen, x);
+    }
     title(ui, painter, seen.with_max_x(x), Align2::LEFT_TOP, titles[0]);
     title(ui, painter, seen.with_min_x(x), Align2::RIGHT_TOP, titles[1]);
 }

@@ -1,8 +1,9 @@
-//! Short messages over the picture.
+//! Short messages below the picture, or over it where there is no room: at most two, one of a kind.
 
 use super::theme;
 use super::widgets::sign_button;
 use crate::app::commands::Command;
+use crate::app::model::Document;
 use crate::system::console;
 use eframe::egui::{self, Align2, Id, Label, Rect, RichText, accesskit::Live, vec2};
 use std::time::{Duration, Instant};
@@ -12,6 +13,9 @@ const LIFETIME: Duration = Duration::from_secs(4);
 
 const WIDTH: f32 = 320.0;
 
+/// So many messages are shown at a time.
+const SHOWN: usize = 2;
+
 struct Toast {
     text: String,
     is_error: bool,
@@ -20,6 +24,8 @@ struct Toast {
     stays: bool,
     /// Commands that it offers.
     offers: Vec<Command>,
+    /// The document in which Undo and Redo do what it offers, once that is known.
+    of: Option<Document>,
     /// Its lower edge above that of the picture, and its height, points. It never moves.
     place: Option<(f32, f32)>,
 }
@@ -28,6 +34,25 @@ impl Toast {
     /// How long the message is still shown, if it does not stay.
     fn left(&self) -> Option<Duration> {
         (!self.stays).then(|| LIFETIME.saturating_sub(self.since.elapsed()))
+    }
+
+    /// What an error is about: the words before the colon.
+    fn subject(&self) -> Option<&str> {
+        self.is_error.then(|| self.text.split(':').next().unwrap_or_default())
+    }
+
+    /// Whether this message replaces `other`. Of two errors it does so if they are about the same, of two offers if they
+    /// offer the same.
+    fn is_like(&self, other: &Toast) -> bool {
+        let is_offer = |toast: &Toast| toast.stays && !toast.is_error;
+        self.subject() == other.subject()
+            && is_offer(self) == is_offer(other)
+            && (!is_offer(self) || self.offers == other.offers)
+    }
+
+    /// Whether it offers something that another change of the document would make wrong.
+    fn is_about_changes(&self) -> bool {
+        self.offers.iter().any(|offer| matches!(offer, Command::Undo | Command::Redo))
     }
 }
 
@@ -38,14 +63,15 @@ pub struct Toasts(Vec<Toast>);
 impl Toasts {
     /// Reports a success.
     pub fn good(&mut self, text: impl Into<String>) {
-        self.add(text.into(), false);
+        self.good_with(text, &[]);
     }
 
-    /// Reports a failure, both in the window and on the terminal. It stays until it is closed.
+    /// Reports a failure, both in the window and on the terminal. It stays until it is closed or no longer true. What it
+    /// is about is said before its colon.
     pub fn bad(&mut self, text: impl Into<String>) {
         let text = text.into();
         console::note(&format!("weekender: {text}"));
-        self.add(text, true);
+        self.add(text, (true, true), &[]);
     }
 
     /// Reports what is remarkable about a render, both in the window and on the terminal.
@@ -56,8 +82,7 @@ impl Toasts {
 
     /// Reports a success, and offers commands that follow from it.
     pub fn good_with(&mut self, text: impl Into<String>, offers: &[Command]) {
-        self.good(text);
-        self.add_offers(offers);
+        self.add(text.into(), (false, false), offers);
     }
 
     /// Adds commands to the newest message.
@@ -67,8 +92,7 @@ impl Toasts {
 
     /// Offers commands until one is chosen or all are withdrawn.
     pub fn offer(&mut self, text: impl Into<String>, offers: &[Command]) {
-        self.good_with(text, offers);
-        self.0.last_mut().into_iter().for_each(|toast| toast.stays = true);
+        self.add(text.into(), (false, true), offers);
     }
 
     /// Removes the messages that offer this command.
@@ -76,10 +100,26 @@ impl Toasts {
         self.0.retain(|toast| !toast.offers.contains(&command));
     }
 
-    fn add(&mut self, text: String, is_error: bool) {
-        self.0.retain(|toast| toast.text != text);
-        let since = Instant::now();
-        self.0.push(Toast { text, is_error, since, stays: is_error, offers: Vec::new(), place: None });
+    /// Removes the error about `subject`, which is no longer true.
+    pub fn end_error(&mut self, subject: &str) {
+        self.0.retain(|toast| toast.subject() != Some(subject));
+    }
+
+    /// Removes offers to undo or redo once the document has changed again.
+    pub fn follow(&mut self, document: &Document) {
+        self.0.retain_mut(|toast| {
+            !toast.is_about_changes() || toast.of.get_or_insert_with(|| document.clone()) == document
+        });
+    }
+
+    fn add(&mut self, text: String, (is_error, stays): (bool, bool), offers: &[Command]) {
+        let (since, offers) = (Instant::now(), offers.to_vec());
+        let mut toast = Toast { text, is_error, since, stays, offers, of: None, place: None };
+        if let Some(index) = self.0.iter().position(|other| toast.is_like(other) || toast.text == other.text)
+        {
+            toast.place = self.0.remove(index).place;
+        }
+        self.0.push(toast);
     }
 
     /// The visible messages, oldest first.
@@ -94,7 +134,9 @@ impl Toasts {
             ui.ctx().request_repaint_after(first);
         }
         let mut closed = None;
-        for index in 0..self.0.len() {
+        let hidden = self.0.len().saturating_sub(SHOWN);
+        self.0[..hidden].iter_mut().for_each(|toast| toast.place = None);
+        for index in hidden..self.0.len() {
             let ends = self.0.iter().filter_map(|toast| toast.place).map(|(at, height)| at + height + 8.0);
             let free = ends.fold(16.0, f32::max);
             let toast = &mut self.0[index];
@@ -134,6 +176,8 @@ impl Toast {
             let room = ui.available_width() - 28.0;
             ui.vertical(|ui| {
                 ui.set_width(room);
+                // In line with the cross.
+                ui.add_space(2.0);
                 let label = ui.add(Label::new(RichText::new(&self.text).color(color)).wrap());
                 let live = if self.is_error { Live::Assertive } else { Live::Polite };
                 label.ctx.accesskit_node_builder(label.id, |node| node.set_live(live));
@@ -161,12 +205,43 @@ mod tests {
     use eframe::egui::pos2;
 
     #[test]
-    fn a_message_is_told_once_and_the_newest_is_the_last() {
+    fn there_is_one_message_of_a_kind_and_the_newest_is_the_last() {
         let mut toasts = Toasts::default();
+        let texts = |toasts: &Toasts| toasts.texts().map(str::to_owned).collect::<Vec<_>>();
         for text in ["first", "second", "first"] {
             toasts.good(text);
         }
-        assert_eq!(toasts.texts().collect::<Vec<_>>(), ["second", "first"]);
+        assert_eq!(texts(&toasts), ["first"]);
+        for text in ["Not opened: a", "Not saved: b", "Not opened: c"] {
+            toasts.bad(text);
+        }
+        assert_eq!(texts(&toasts), ["first", "Not saved: b", "Not opened: c"]);
+        toasts.offer("1 %", &[Command::StopSaving]);
+        toasts.offer("2 %", &[Command::StopSaving]);
+        toasts.good("last");
+        assert_eq!(texts(&toasts), ["Not saved: b", "Not opened: c", "2 %", "last"]);
+        toasts.end_error("Not saved");
+        toasts.withdraw(Command::StopSaving);
+        assert_eq!(texts(&toasts), ["Not opened: c", "last"]);
+    }
+
+    #[test]
+    fn at_most_two_messages_are_drawn_and_hidden_ones_come_back() {
+        let mut toasts = Toasts::default();
+        ["a: 1", "b: 2", "c: 3"].into_iter().for_each(|text| toasts.bad(text));
+        let drawn = |toasts: &mut Toasts| {
+            let context = egui::Context::default();
+            let over = Rect::from_min_size(pos2(0.0, 0.0), vec2(600.0, 400.0));
+            context
+                .run_ui(egui::RawInput::default(), |ui| toasts.ui(ui, over, &mut Vec::new()))
+                .textures_delta
+                .clear();
+            let is_drawn = |toast: &&Toast| toast.place.is_some();
+            toasts.0.iter().filter(is_drawn).map(|toast| toast.text.clone()).collect::<Vec<_>>()
+        };
+        assert_eq!(drawn(&mut toasts), ["b: 2", "c: 3"]);
+        toasts.end_error("b");
+        assert_eq!(drawn(&mut toasts), ["a: 1", "c: 3"]);
     }
 
     #[test]

@@ -205,8 +205,9 @@ pub fn with_keys(ui: &Ui, help: &str, command: Command) -> String {
 
 /// A button that is tinted while it is on.
 pub fn choice<'a>(ui: &Ui, is_on: bool, content: impl IntoAtoms<'a>) -> Button<'a> {
-    let stroke = if is_on { Stroke::new(1.0, theme::colours(ui).accent) } else { Stroke::NONE };
-    Button::new(content).selected(is_on).stroke(stroke)
+    // Both are equally large.
+    let colour = if is_on { theme::colours(ui).accent } else { Color32::TRANSPARENT };
+    Button::new(content).selected(is_on).stroke(Stroke::new(1.0, colour))
 }
 
 /// Buttons side by side, exactly one of them on, each at least `width` wide. Returns the one that was clicked.

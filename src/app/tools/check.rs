@@ -1,10 +1,13 @@
 //! A picture of another program: what is wrong with it, and where.
 
+use super::inspector;
 use crate::app::commands::{Command, PanelContext};
 use crate::app::model::{Remembered, Tab};
 use crate::app::panels::right::scrolling;
 use crate::app::panels::stage_panel::paragraph;
-use crate::app::toolkit::widgets::{About, Header, fold, hint, panel_line, primary, small, switch, tip};
+use crate::app::toolkit::widgets::{
+    About, Header, entry, fold, hint, list, panel_line, primary, small, switch, tip,
+};
 use crate::app::toolkit::{Answers, Texture, overlay, theme};
 use crate::pictures::check::{Answer, AnswerKind, Damage, Mine, judge, pictures};
 use crate::stages::Stage;
@@ -39,6 +42,9 @@ pub struct Check {
     has_news: bool,
     side: Side,
     divider: f32,
+    /// The pixel under the pointer, and whether it is one of the user's picture.
+    hovered: Option<[u32; 2]>,
+    is_over_yours: bool,
     answers: Answers<Checked>,
 }
 
@@ -60,7 +66,7 @@ impl Check {
         };
         self.answers.ask("check", context, work);
         (self.path, self.has_news) = (Some(path.to_owned()), true);
-        (self.side, self.divider) = (Side::Wipe, 0.5);
+        (self.side, self.divider, self.hovered) = (Side::Wipe, 0.5, None);
     }
 
     /// Takes the answer, and opens its tab when there is something new in it.
@@ -117,7 +123,7 @@ impl Check {
             });
             return;
         };
-        let (mut is_again, mut is_closed) = (false, false);
+        let (mut is_again, mut is_closed, mut of_section) = (false, false, None);
         crate::app::panels::right::foot(ui, |ui| {
             ui.horizontal(|ui| {
                 ui.set_height(32.0);
@@ -127,6 +133,7 @@ impl Check {
                     cx.send(Command::CheckPicture);
                 }
             });
+            numbers(ui, self.hovered, pictures.as_ref(), self.is_over_yours, self.side);
         });
         scrolling(ui, |ui| {
             verdict(ui, answer);
@@ -142,6 +149,7 @@ impl Check {
                 paragraph(ui, "The file, too", &format!("{title}: {remedy}."));
             }
             links(ui, answer, cx);
+            of_section = section(ui, answer);
             if pictures.is_some() {
                 ui.add_space(4.0);
                 small(ui, "Compare");
@@ -152,6 +160,9 @@ impl Check {
                     (Side::Difference, About::new("Difference", "Where the two differ, and by how much")),
                 ];
                 self.side = switch(ui, 0.0, self.side, &sides).unwrap_or(self.side);
+                if answer.evidence.is_empty() {
+                    return;
+                }
                 ui.add_space(8.0);
                 panel_line(ui);
                 fold(ui, Header { title: "Figures", ..Header::default() }, false, |ui| {
@@ -161,8 +172,8 @@ impl Check {
                 });
             }
         });
-        if let Some(path) = self.path.clone().filter(|_| is_again) {
-            self.begin(ui.ctx(), &path, None);
+        if let Some(path) = self.path.clone().filter(|_| is_again || of_section.is_some()) {
+            self.begin(ui.ctx(), &path, of_section);
         } else if is_closed {
             self.close();
         }
@@ -171,9 +182,9 @@ impl Check {
     /// Draws the two pictures in the middle of the window, in place of the traced one. Returns the room; `None` without pictures.
     pub fn picture(&mut self, ui: &mut Ui) -> Option<Rect> {
         let (answer, pictures) = self.shown.as_ref()?;
-        let (size, [yours, ours, difference]) = pictures.as_ref()?;
+        let (pixels, [yours, ours, difference]) = pictures.as_ref()?;
         let room = ui.available_rect_before_wrap();
-        let size = vec2(size[0] as f32, size[1] as f32);
+        let size = vec2(pixels[0] as f32, pixels[1] as f32);
         let scale = ((room.size() - Vec2::splat(16.0)) / size).min_elem().max(0.0);
         let rect = Rect::from_center_size(room.center(), size * scale);
         let response = ui.allocate_rect(room, Sense::drag());
@@ -202,10 +213,73 @@ impl Check {
             }
             Side::Yours => overlay::title(ui, &painter, rect, Align2::LEFT_TOP, &your_title),
             Side::Ours => overlay::title(ui, &painter, rect, Align2::RIGHT_TOP, &our_title),
-            Side::Difference => {}
+            Side::Difference => {
+                let words = format!("Difference: {}", self.name());
+                overlay::title(ui, &painter, rect, Align2::LEFT_TOP, &words);
+            }
+        }
+        if let Some(at) = response.hover_pos().filter(|at| rect.contains(*at)) {
+            let place = (at - rect.min) / rect.size();
+            let pixel = |share: f32, side: u32| ((share * side as f32) as u32).min(side - 1);
+            self.hovered = Some([pixel(place.x, pixels[0]), pixel(place.y, pixels[1])]);
+            let is_left = self.side == Side::Wipe && place.x < self.divider;
+            self.is_over_yours = is_left || self.side == Side::Yours;
         }
         Some(room)
     }
+}
+
+/// The bytes of both pictures under the pointer.
+fn numbers(
+    ui: &mut Ui,
+    at: Option<[u32; 2]>,
+    pictures: Option<&([u32; 2], [Texture; 3])>,
+    is_yours: bool,
+    side: Side,
+) {
+    let Some((_, [yours, ours, _])) = pictures else { return };
+    let found = at.and_then(|at| Some((at, yours.colour(at)?, ours.colour(at)?)));
+    inspector::frame(ui, found.is_some(), |ui| {
+        let Some((at, yours, ours)) = found else { return };
+        inspector::header(ui, at, None);
+        let change = [0, 1, 2].map(|i| format!("{:+}", i32::from(ours[i]) - i32::from(yours[i])));
+        let is_difference = side == Side::Difference;
+        let words = |bytes: [u8; 3]| bytes.map(|byte| byte.to_string());
+        inspector::table(
+            ui,
+            &[
+                ("yours", "Your picture, 0 to 255".to_owned(), words(yours), is_yours && !is_difference),
+                (
+                    "ours",
+                    "The same stage by Weekender, 0 to 255".to_owned(),
+                    words(ours),
+                    !is_yours && !is_difference,
+                ),
+                (
+                    "change",
+                    "How much brighter ours is".to_owned(),
+                    change.map(|n| n.replace('-', "−")),
+                    is_difference,
+                ),
+            ],
+        );
+    });
+}
+
+/// A list to choose the section in that the picture belongs to. Returns the one that was chosen.
+fn section(ui: &mut Ui, answer: &Answer) -> Option<&'static Stage> {
+    let mut chosen = None;
+    let shown = answer.stage.map_or("unknown", |stage| stage.section);
+    let about = About::new("It is of section", "Checks it again as a picture of the section that you choose");
+    list(ui, about, shown, |ui| {
+        for stage in Stage::walk() {
+            let name = format!("{} {}", stage.section, stage.title);
+            if entry(ui, answer.stage == Some(stage), About::new(&name, "")) {
+                chosen = Some(stage);
+            }
+        }
+    });
+    chosen
 }
 
 /// The verdict, and one sentence.

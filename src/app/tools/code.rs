@@ -7,7 +7,7 @@ use crate::app::toolkit::widgets::{About, hint, small, switch, tip};
 use crate::page::companion::{Excerpt, Highlighter, excerpts_between};
 use crate::stages::Stage;
 use eframe::egui::text::{LayoutJob, TextFormat};
-use eframe::egui::{FontSelection, Frame, Grid, Label, Margin, RichText, ScrollArea, Sides, TextStyle, Ui};
+use eframe::egui::{FontSelection, Frame, Grid, Label, Margin, RichText, Sides, TextStyle, Ui};
 use std::sync::LazyLock;
 
 /// Meanings of words in the code that are not in the book.
@@ -156,10 +156,7 @@ fn excerpt_ui(ui: &mut Ui, (excerpt, pieces): &Coloured) {
     let well = Frame::new().fill(colours.well).stroke(ui.visuals().window_stroke).corner_radius(4);
     well.inner_margin(Margin::same(8)).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        let id = (&excerpt.file, excerpt.first);
-        ScrollArea::horizontal().id_salt(id).show(ui, |ui| {
-            ui.add(Label::new(layout(ui, pieces)).extend());
-        });
+        ui.add(Label::new(layout(ui, pieces)).wrap());
     });
 }
 

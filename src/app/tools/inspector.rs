@@ -1,13 +1,16 @@
-//! The pixel inspector: value, error, and the surface under the pointer.
+//! The pixel inspector: the numbers of what is under the pointer, which in a comparison are those of one side and the change
+//! from one to the other.
 
-use crate::app::model::Document;
+use crate::app::model::{Document, Mode, ViewState, kind_word};
 use crate::app::toolkit::widgets::{compact, hint, tip};
 use crate::app::toolkit::{Query, theme};
+use crate::app::tracing::second::OtherFilm;
 use crate::app::tracing::subject::{PictureId, Subject};
 use crate::backends::layers::Layer;
-use crate::film::to_byte;
+use crate::film::{Film, to_byte};
 use crate::progressive::standard_error;
 use crate::scene::Scene;
+use crate::stages::Transfer;
 use eframe::egui::{self, Align, Color32, Layout, Rect, RichText, Sense, TextStyle, Ui, UiBuilder, vec2};
 
 /// With more spheres than this, searching for the one under the pointer would stall the window.
@@ -17,7 +20,7 @@ const PICK_LIMIT: usize = 50_000;
 const ROW: f32 = 4.0 / 3.0;
 const COLUMN: f32 = 14.0 / 3.0;
 
-/// A pixel of the film.
+/// A pixel of a film.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pixel {
     /// Column and row, from the upper left.
@@ -30,25 +33,54 @@ pub struct Pixel {
     pub bytes: [u8; 3],
 }
 
+impl Pixel {
+    fn of(film: &Film, at: [u32; 2], transfer: Transfer) -> Option<Pixel> {
+        let [x, y] = at;
+        if x >= film.width() || y >= film.height() || film.sample_count() == 0 {
+            return None;
+        }
+        let index = y as usize * film.width() as usize + x as usize;
+        let mean = film.mean(index);
+        let bytes = mean.map(|v| to_byte(v, transfer, y as usize, film.height() as usize));
+        Some(Pixel { at, mean, error: standard_error(film, index), bytes })
+    }
+}
+
+/// What is read at a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Readout {
+    /// The pixel under the pointer.
+    pub pixel: Pixel,
+    /// It is one of the other picture.
+    pub is_other: bool,
+    /// The pixels of the other picture and of this one, if they are compared.
+    pub compared: Option<[Pixel; 2]>,
+}
+
 /// The pixel under the pointer and what is known about it.
 #[derive(Default)]
 pub struct Inspector {
     pub hovered: Option<[u32; 2]>,
+    /// The pointer is over the other picture.
+    is_over_other: bool,
     /// By pixel, film and number of samples.
-    query: Query<([u32; 2], PictureId, u64), Pixel>,
+    mine: Query<([u32; 2], PictureId, u64), ([u32; 2], Pixel)>,
+    /// None where the other picture has no pixel.
+    theirs: Query<([u32; 2], (u64, u64)), ([u32; 2], Option<Pixel>)>,
+    readout: Option<Readout>,
 }
 
 impl Inspector {
-    /// Notes the pixel under the pointer.
-    pub fn hover(&mut self, pixel: Option<[u32; 2]>) {
+    /// Notes the pixel under the pointer, and whether another picture lies over it.
+    pub fn hover(&mut self, pixel: Option<[u32; 2]>, is_over_other: bool) {
         if pixel.is_some() {
-            self.hovered = pixel;
+            (self.hovered, self.is_over_other) = (pixel, is_over_other);
         }
     }
 
-    /// The known facts about a pixel.
-    pub fn pixel(&self) -> Option<&Pixel> {
-        self.query.answer.as_ref()
+    /// What is known about the pixel.
+    pub fn readout(&self) -> Option<&Readout> {
+        self.readout.as_ref()
     }
 
     /// Forgets the pixel, because the picture has changed.
@@ -56,107 +88,186 @@ impl Inspector {
         *self = Inspector { hovered: self.hovered, ..Inspector::default() };
     }
 
-    /// Takes the film's answer and queries the film again if there may be news. If the film is gone or has no samples,
-    /// the last known pixel stays.
-    pub fn follow(&mut self, subject: &Subject<'_>, context: &egui::Context) {
-        self.query.follow();
+    /// Takes the films' answers and queries them again if there may be news. If a film is gone or has no samples, the last
+    /// known pixel stays.
+    pub fn follow(
+        &mut self,
+        subject: &Subject<'_>,
+        other: Option<OtherFilm<'_>>,
+        view: &ViewState,
+        context: &egui::Context,
+    ) {
+        self.mine.follow();
+        self.theirs.follow();
+        self.join(other.is_some(), view);
+        let Some(at) = self.hovered else { return };
         let (document, main) = (subject.document, &subject.tracing.main);
-        let Some(at) = self.hovered.filter(|_| main.is_full(document)) else { return };
-        let (key, transfer) = ((at, subject.id(), main.shown_samples()), document.rules().transfer);
-        subject.ask(context, &mut self.query, key, move |film| {
-            let [x, y] = at;
-            if x >= film.width() || y >= film.height() || film.sample_count() == 0 {
-                return None;
-            }
-            let index = y as usize * film.width() as usize + x as usize;
-            let mean = film.mean(index);
-            let bytes = mean.map(|v| to_byte(v, transfer, y as usize, film.height() as usize));
-            Some(Pixel { at, mean, error: standard_error(film, index), bytes })
-        });
+        let size = document.size();
+        if let Some(other) = other
+            && let Some(answer) = self.theirs.ask(context, (at, other.id()))
+        {
+            let transfer = other.document().rules().transfer;
+            other.inspect(move |film| {
+                let there = at_other(at, size, [film.width(), film.height()]);
+                answer.give(Ok((at, there.and_then(|there| Pixel::of(film, there, transfer)))));
+            });
+        }
+        if main.is_full(document) {
+            let (key, transfer) = ((at, subject.id(), main.shown_samples()), document.rules().transfer);
+            let look = move |film: &Film| Some((at, Pixel::of(film, at, transfer)?));
+            subject.ask(context, &mut self.mine, key, look);
+        }
     }
 
-    /// Draws the pixel. `layer` is the displayed layer and its value there; `other` is what is at that place in the
-    /// picture that is compared with this one.
+    /// Joins the answers about one place.
+    fn join(&mut self, has_other: bool, view: &ViewState) {
+        let (mine, theirs) = (self.mine.answer.as_ref(), self.theirs.answer.as_ref());
+        let is_other = self.is_over_other || view.looked().is_some();
+        let found = match (has_other, mine, theirs) {
+            (false, Some((_, pixel)), _) => Some((Some(pixel), false, None)),
+            (true, _, Some((_, pixel))) if view.looked().is_some() => Some((pixel.as_ref(), true, None)),
+            (true, Some((at, mine)), Some((there, theirs))) if at == there => {
+                let compared = theirs.clone().map(|theirs| [theirs, mine.clone()]);
+                let is_other = is_other && view.mode() == Some(Mode::Wipe);
+                Some((if is_other { theirs.as_ref() } else { Some(mine) }, is_other, compared))
+            }
+            _ => None,
+        };
+        if let Some((pixel, is_other, compared)) = found {
+            self.readout = pixel.cloned().map(|pixel| Readout { pixel, is_other, compared });
+        }
+    }
+
+    /// Draws the numbers. The other picture has the first name and document; `layer` is the displayed layer and its value.
     pub fn ui(
         &self,
         ui: &mut Ui,
-        document: &Document,
+        names: [&str; 2],
+        documents: [&Document; 2],
+        mode: Option<Mode>,
         layer: Option<(Layer, [f64; 3])>,
-        other: Option<[f64; 3]>,
     ) {
-        ui.spacing_mut().item_spacing.y = 0.0;
-        // The header and four rows, so that what is above stays where it is.
-        ui.set_min_height(24.0 + 4.0 * ROW * TextStyle::Small.resolve(ui.style()).size);
-        let Some(pixel) = self.pixel() else {
-            ui.horizontal(|ui| ui.label(RichText::new("Pixel").strong()));
-            hint(ui, "Point at the picture to read its numbers.");
-            return;
-        };
-        pixel_ui(document, pixel, layer, other, ui);
-        ui.add_space(4.0);
+        frame(ui, self.readout.is_some(), |ui| {
+            let Some(readout) = &self.readout else { return };
+            let document = documents[usize::from(!readout.is_other)];
+            let name = readout.compared.as_ref().map(|_| names[usize::from(!readout.is_other)]);
+            header(ui, readout.pixel.at, surface(document, readout.pixel.at));
+            table(ui, &rows(readout, names, name.unwrap_or_default(), mode, layer));
+        });
     }
+}
+
+/// The header and four rows, so that what is above stays where it is.
+pub fn frame(ui: &mut Ui, has_pixel: bool, add: impl FnOnce(&mut Ui)) {
+    ui.spacing_mut().item_spacing.y = 0.0;
+    ui.set_min_height(24.0 + 4.0 * ROW * TextStyle::Small.resolve(ui.style()).size);
+    if has_pixel {
+        add(ui);
+        ui.add_space(4.0);
+    } else {
+        ui.horizontal(|ui| ui.label(RichText::new("Pixel").strong()));
+        hint(ui, "Point at the picture to read its numbers.");
+    }
+}
+
+/// Where a picture of the size `theirs` that is drawn over one of the size `mine` has what that has at `at`. Pictures of
+/// another shape lie in its middle.
+fn at_other(at: [u32; 2], mine: [u32; 2], theirs: [u32; 2]) -> Option<[u32; 2]> {
+    let stretch = [0, 1].map(|axis| f64::from(mine[axis]) / f64::from(theirs[axis]));
+    let least = stretch[0].min(stretch[1]);
+    let is_same_shape = stretch[0].max(stretch[1]) < 1.02 * least;
+    let [x, y] = [0, 1].map(|axis| {
+        let place = (f64::from(at[axis]) + 0.5) / f64::from(mine[axis]) - 0.5;
+        let place = if is_same_shape { place } else { place * stretch[axis] / least };
+        let pixel = ((place + 0.5) * f64::from(theirs[axis])).floor();
+        (pixel >= 0.0 && pixel < f64::from(theirs[axis])).then_some(pixel as u32)
+    });
+    Some([x?, y?])
 }
 
 /// The display names of a sphere and its material.
 pub fn names(scene: &Scene, sphere: usize) -> (String, String) {
     let named = &scene.materials[scene.spheres[sphere].material];
-    (format!("sphere {sphere}"), format!("{} ({})", named.name, named.material.kind()))
+    let kind = kind_word(&named.material);
+    let is_said = named.name.starts_with(kind);
+    let name = if is_said { named.name.clone() } else { format!("{}, {kind}", named.name) };
+    (format!("sphere {sphere}"), name)
 }
 
-fn pixel_ui(
-    document: &Document,
-    pixel: &Pixel,
-    layer: Option<(Layer, [f64; 3])>,
-    other: Option<[f64; 3]>,
-    ui: &mut Ui,
-) {
-    let (colours, [x, y]) = (theme::colours(ui), pixel.at);
-    let (what, help) = surface(document, pixel.at).unzip();
+pub fn header(ui: &mut Ui, [x, y]: [u32; 2], surface: Option<(String, String)>) {
+    let (what, help) = surface.unzip();
     ui.horizontal(|ui| {
         ui.label(RichText::new("Pixel").strong());
         let at = what.map_or_else(|| format!("{x}, {y}"), |what| format!("{x}, {y} · {what}"));
-        let text = RichText::new(at).small().color(colours.weak);
+        let text = RichText::new(at).small().color(theme::colours(ui).weak);
         let response = ui.add(egui::Label::new(text).truncate());
         tip(ui, response, help.as_deref().unwrap_or_default(), None);
     });
+}
+
+/// A row of the table: name, help, red, green, blue, and whether it is about the picture under the pointer.
+pub type Row<'a> = (&'a str, String, [String; 3], bool);
+
+fn rows<'a>(
+    Readout { pixel, is_other, compared }: &Readout,
+    names: [&'a str; 2],
+    name: &str,
+    mode: Option<Mode>,
+    layer: Option<(Layer, [f64; 3])>,
+) -> Vec<Row<'a>> {
+    let light = "Linear radiance: the mean of the samples, before gamma";
+    let mut rows: Vec<Row<'a>> = Vec::new();
+    match compared {
+        Some([theirs, mine]) => {
+            let is_wipe = mode == Some(Mode::Wipe);
+            let help = |name: &str| format!("{name}. {light}");
+            rows.push((names[0], help(names[0]), theirs.mean.map(decimals), is_wipe && *is_other));
+            rows.push((names[1], help(names[1]), mine.mean.map(decimals), is_wipe && !is_other));
+            let change = [0, 1, 2].map(|i| mine.mean[i] - theirs.mean[i]);
+            let help = format!("How much brighter {} is than {}", names[1], names[0]);
+            rows.push(("change", help, change.map(signed), !is_wipe));
+        }
+        None => {
+            rows.push(("light", light.to_owned(), pixel.mean.map(decimals), true));
+            let unknown = || [(); 3].map(|()| "–".to_owned());
+            let noise = pixel.error.map_or_else(unknown, |error| error.map(decimals));
+            let help = "How far off that mean may still be (standard error)";
+            rows.push(("noise ±", help.to_owned(), noise, true));
+        }
+    }
+    if mode != Some(Mode::Difference) {
+        let of = if name.is_empty() { String::new() } else { format!(" of {name}") };
+        let help = format!("The byte that a file{of} gets, 0 to 255");
+        rows.push(("saved as", help, pixel.bytes.map(|byte| byte.to_string()), true));
+    }
+    rows.extend(layer.map(|(layer, value)| match layer {
+        Layer::Normals => {
+            let help = "Which way the surface faces: x, y, z".to_owned();
+            ("normal", help, value.map(|n| signed(2.0 * n - 1.0)), true)
+        }
+        Layer::Albedo => ("albedo", "What the surface reflects".to_owned(), value.map(decimals), true),
+        Layer::RaysPerPath => {
+            let values = [String::new(), String::new(), format!("{:.2}", value[0])];
+            ("rays per path", "How many rays a path through this pixel has".to_owned(), values, true)
+        }
+    }));
+    rows
+}
+
+pub fn table(ui: &mut Ui, rows: &[Row<'_>]) {
+    let colours = theme::colours(ui);
     let rgb = [("R", colours.bad), ("G", colours.good), ("B", colours.accent)];
     cells(ui, "", "Red, green, blue", rgb.map(|(name, color)| (name.to_owned(), color)));
-    let mut line = |name: &str, help: &str, values: [String; 3]| {
-        cells(ui, name, help, values.map(|value| (value, colours.strong)));
-    };
-    let light = "Linear radiance: the mean of the samples, before gamma";
-    match other {
-        Some(mean) => {
-            line("A", &format!("This picture. {light}"), pixel.mean.map(decimals));
-            line("B", "The picture that it is compared with", mean.map(decimals));
-            let difference = [0, 1, 2].map(|i| pixel.mean[i] - mean[i]);
-            line("A − B", "How much brighter this picture is", difference.map(signed));
-        }
-        None => line("light", light, pixel.mean.map(decimals)),
-    }
-    let noise = pixel.error.map_or_else(|| [(); 3].map(|()| "–".to_owned()), |error| error.map(decimals));
-    line("noise ±", "How far off that mean may still be (standard error)", noise);
-    let bytes = pixel.bytes.map(|byte| byte.to_string());
-    line("saved as", "The byte that a file gets, 0 to 255", bytes);
-    match layer {
-        Some((Layer::Normals, normal)) => {
-            line("normal", "Which way the surface faces: x, y, z", normal.map(|n| signed(2.0 * n - 1.0)));
-        }
-        Some((Layer::Albedo, albedo)) => {
-            line("albedo", "What the surface reflects", albedo.map(decimals));
-        }
-        Some((Layer::RaysPerPath, [rays, ..])) => {
-            let values = [String::new(), String::new(), format!("{rays:.2}")];
-            line("rays per path", "How many rays a path through this pixel has", values);
-        }
-        None => {}
+    for (name, help, values, is_meant) in rows {
+        let color = if *is_meant { colours.strong } else { colours.weak };
+        cells(ui, name, help, values.clone().map(|value| (value, color)));
     }
 }
 
 /// The name of the surface at a pixel, and how far away it is.
 fn surface(document: &Document, [x, y]: [u32; 2]) -> Option<(String, String)> {
     let scene = document.scene();
-    if scene.spheres.len() > PICK_LIMIT {
+    if scene.spheres.len() > PICK_LIMIT || document.no_rays().is_some() {
         return None;
     }
     let [width, height] = document.size();
@@ -182,14 +293,16 @@ fn cells(ui: &mut Ui, name: &str, help: &str, values: [(String, Color32); 3]) {
     let (row, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW * em), Sense::hover());
     tip(ui, response, help, None);
     let weak = theme::colours(ui).weak;
-    let mut cell = |rect: Rect, layout: Layout, text: &str, color: Color32| {
+    let mut cell = |rect: Rect, layout: Layout, text: &str, color: Color32, is_cut: bool| {
         let mut ui = ui.new_child(UiBuilder::new().max_rect(rect).layout(layout));
-        ui.add(egui::Label::new(RichText::new(text).small().color(color)).extend());
+        let label = egui::Label::new(RichText::new(text).small().color(color));
+        ui.add(if is_cut { label.truncate() } else { label.extend() });
     };
-    cell(row, Layout::left_to_right(Align::Center), name, weak);
+    let left = row.with_max_x(row.right() - (3.0 * COLUMN - 1.0) * em);
+    cell(left, Layout::left_to_right(Align::Center), name, weak, true);
     for (place, (value, color)) in values.into_iter().enumerate() {
         let right = row.right() - COLUMN * em * (2 - place) as f32;
-        cell(row.with_max_x(right), Layout::right_to_left(Align::Center), &value, color);
+        cell(row.with_max_x(right), Layout::right_to_left(Align::Center), &value, color, false);
     }
 }
 
@@ -199,21 +312,39 @@ mod tests {
     use crate::app::model::{Origin, Source};
     use crate::job::recipe::Recipe;
     use crate::render_cpu::record_path;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     #[test]
-    fn a_difference_tells_both_sides() {
-        let document = Document::new(Origin::new(Recipe::builtin("three-spheres").unwrap(), Source::Builtin));
-        let pixel = Pixel { at: [0, 0], mean: [0.5, 0.25, 1.0], error: None, bytes: [0; 3] };
-        let other = [0.25, 0.5, 1.0];
-        let harness = Harness::new_ui(|ui| pixel_ui(&document, &pixel, None, Some(other), ui));
-        let labels = harness.get_all_by_role(egui::accesskit::Role::Label);
-        let texts: Vec<String> = labels.filter_map(|node| node.value()).collect();
-        for text in ["A", "B", "A − B", "0.5000", "0.2500", "+0.2500", "−0.2500", "+0.0000"] {
-            assert!(texts.iter().any(|found| found == text), "no {text} in {texts:?}");
+    fn a_comparison_names_both_sides_and_tells_the_change() {
+        let pixel = |mean, bytes| Pixel { at: [0, 0], mean, error: None, bytes };
+        let compared = [pixel([0.25, 0.5, 1.0], [1; 3]), pixel([0.5, 0.25, 1.0], [2; 3])];
+        let readout = |is_other: bool| Readout {
+            pixel: compared[usize::from(!is_other)].clone(),
+            is_other,
+            compared: Some(compared.clone()),
+        };
+        for (is_other, saved) in [(true, "1"), (false, "2")] {
+            let found = rows(&readout(is_other), ["11.2", "11.4"], "", Some(Mode::Wipe), None);
+            let names: Vec<&str> = found.iter().map(|row| row.0).collect();
+            assert_eq!(names, ["11.2", "11.4", "change", "saved as"]);
+            assert_eq!(found[2].2, ["+0.2500", "−0.2500", "+0.0000"]);
+            assert_eq!(found[3].2, [saved; 3]);
+            assert_eq!([found[0].3, found[1].3], [is_other, !is_other], "the one under the pointer");
         }
-        assert!(!texts.iter().any(|text| text == "light"));
+    }
+
+    #[test]
+    fn a_picture_of_another_size_or_shape_is_read_where_it_is_drawn() {
+        for (at, mine, theirs, expected) in [
+            ([7, 3], [32, 18], [32, 18], Some([7, 3])),
+            ([7, 3], [32, 18], [64, 36], Some([15, 7])),
+            // Half as wide: in the middle.
+            ([16, 9], [32, 18], [16, 18], Some([8, 9])),
+            ([8, 9], [32, 18], [16, 18], Some([0, 9])),
+            ([7, 9], [32, 18], [16, 18], None),
+            ([24, 9], [32, 18], [16, 18], None),
+        ] {
+            assert_eq!(at_other(at, mine, theirs), expected, "{at:?} {mine:?} {theirs:?}");
+        }
     }
 
     /// The sphere under the pointer is the one that the tracer's camera ray hits.

@@ -41,6 +41,7 @@ impl ToneUi {
         self.is_open = false;
         let (show, channel) = (view.show(), view.tone.channel);
         let mut summary = vec![show.name().trim_end_matches('…').to_lowercase()];
+        summary.extend(view.is_denoised.then(|| "denoised".to_owned()));
         summary.extend(channel.map(|channel| channel.name().to_lowercase()));
         if view.tone.exposure != 0.0 {
             let sign = if view.tone.exposure > 0.0 { "+" } else { "" };
@@ -127,5 +128,9 @@ fn paint(ui: &mut Ui, histogram: &Histogram, exposure: f64) {
     let help = "How many pixels are how bright, from black to white: each twentieth of the width is twice the light, \
                 and heights are square roots of counts";
     tip(ui, response, help, None);
-    small(ui, words);
+    ui.scope(|ui| {
+        // Two lines, so that what is below stays where it is.
+        ui.set_min_height(2.0 * ui.text_style_height(&TextStyle::Small));
+        small(ui, words);
+    });
 }

@@ -104,7 +104,7 @@ impl Tracing {
         let want = Want {
             document,
             backend: &model.backend(),
-            stop: document.stop,
+            stop: view.stop(self.main.status().run, document.stop),
             view: view.of_film(self.main.status().run, self.second.means(view)),
             is_moving: changes.is_moving(),
             is_paused: *is_paused,

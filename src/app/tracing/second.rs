@@ -4,6 +4,7 @@
 use super::tracer::{Shown, Tracer, Want};
 use crate::app::model::{Document, Kept, Mode, Origin, Other, ViewState, differ_in_camera};
 use crate::app::toolkit::{Answers, Texture};
+use crate::film::Film;
 use crate::progressive::{ReferenceMeans, View};
 use eframe::egui::Context;
 use std::sync::Arc;
@@ -24,6 +25,38 @@ pub struct Second {
     resolving: Answers<(Arc<Kept>, View, Vec<u8>)>,
 }
 
+/// The film of the second picture.
+#[derive(Clone, Copy)]
+pub enum OtherFilm<'a> {
+    Kept(&'a Kept),
+    Traced(&'a Tracer, &'a Shown),
+}
+
+impl OtherFilm<'_> {
+    pub fn document(&self) -> &Document {
+        match self {
+            OtherFilm::Kept(kept) => &kept.document,
+            OtherFilm::Traced(_, shown) => &shown.document,
+        }
+    }
+
+    /// Tells films and their states apart.
+    pub fn id(&self) -> (u64, u64) {
+        match self {
+            OtherFilm::Kept(kept) => (kept.number, u64::MAX),
+            OtherFilm::Traced(_, shown) => (shown.run, shown.samples),
+        }
+    }
+
+    /// Runs `look` with the film, on the render thread if there is one.
+    pub fn inspect(&self, look: impl FnOnce(&Film) + Send + 'static) {
+        match self {
+            OtherFilm::Kept(kept) => look(&kept.film),
+            OtherFilm::Traced(tracer, _) => tracer.inspect(look),
+        }
+    }
+}
+
 impl Second {
     /// The newest second picture.
     pub fn shown(&self, view: &ViewState) -> Option<&Shown> {
@@ -33,6 +66,14 @@ impl Second {
                 resolved.map(|(_, _, shown)| shown)
             }
             None => self.tracer.as_ref().and_then(Tracer::shown),
+        }
+    }
+
+    /// The second picture, to read its numbers.
+    pub fn film<'a>(&'a self, view: &'a ViewState) -> Option<OtherFilm<'a>> {
+        match view.compared_kept() {
+            Some(kept) => Some(OtherFilm::Kept(kept)),
+            None => self.tracer.as_ref().and_then(|tracer| Some(OtherFilm::Traced(tracer, tracer.shown()?))),
         }
     }
 

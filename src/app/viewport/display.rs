@@ -53,6 +53,8 @@ impl Display {
         let fault = self.layers.follow(context, view.show().layer(), document);
         if let Some(reason) = fault {
             toasts.bad(format!("This view cannot be traced: {reason}"));
+        } else if view.show().layer().is_none() {
+            toasts.end_error("This view cannot be traced");
         }
         self.tone.follow(&subject, view.tone.white(), context);
         let is_picture = view.mode().is_none() && view.show() == Show::Picture;

@@ -75,6 +75,10 @@ impl Viewport {
         let response = ui.allocate_rect(room, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(description(live)));
+        if response.drag_started() {
+            // As a click does.
+            ui.memory_mut(|memory| memory.focused().into_iter().for_each(|id| memory.surrender_focus(id)));
+        }
         let rect = self.place(ui, room, cx);
         let mut touch = Touch::default();
         let is_wipe = view.mode() == Some(Mode::Wipe);
@@ -103,6 +107,7 @@ impl Viewport {
         self.pointer = response.hover_pos().filter(|at| rect.contains(*at)).map(|at| place_at(rect, at));
         let pixel = |at| self.placement.pixel_at(at, document.size());
         touch.hovered = response.hover_pos().and_then(pixel);
+        touch.is_over_other = is_wipe && response.hover_pos().is_some_and(|at| at.x < own.left());
         if response.secondary_clicked()
             && let Some(at) = response.interact_pointer_pos().filter(|at| rect.contains(*at))
             && live.no_rays().is_none()

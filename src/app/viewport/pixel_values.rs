@@ -3,6 +3,7 @@
 use crate::app::toolkit::Query;
 use crate::app::toolkit::widgets::compact;
 use crate::app::tracing::subject::{PictureId, Subject};
+use crate::progressive::luminance;
 use eframe::egui::{self, Align2, Color32, Rect, TextStyle, Ui, vec2};
 
 /// The smallest side of a pixel, in points, in which its numbers have room.
@@ -80,7 +81,9 @@ impl PixelValues {
 
 /// Black or white, whichever contrasts more with an sRGB colour (WCAG 2).
 fn readable_on(ground: [u8; 3]) -> Color32 {
-    let luminance = egui::Rgba::from(Color32::from_rgb(ground[0], ground[1], ground[2])).intensity();
+    let [red, green, blue, _] =
+        egui::Rgba::from(Color32::from_rgb(ground[0], ground[1], ground[2])).to_array();
+    let luminance = luminance([red, green, blue].map(f64::from));
     // The contrast is (brighter + 0.05) / (darker + 0.05).
     if (luminance + 0.05).powi(2) > 1.05 * 0.05 { Color32::BLACK } else { Color32::WHITE }
 }
@@ -109,6 +112,7 @@ mod tests {
             ([140, 0, 0], Color32::WHITE),
             ([0, 100, 0], Color32::WHITE),
             ([0, 0, 255], Color32::WHITE),
+            ([204, 0, 0], Color32::WHITE),
             ([255, 0, 0], Color32::BLACK),
             ([0, 160, 0], Color32::BLACK),
             ([128, 128, 128], Color32::BLACK),

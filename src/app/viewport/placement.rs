@@ -133,6 +133,8 @@ pub struct Touch {
     pub is_move: bool,
     /// The pixel under the pointer.
     pub hovered: Option<[u32; 2]>,
+    /// The other picture of a comparison lies over it.
+    pub is_over_other: bool,
     /// A message about the effect of a click, or why it has none.
     pub said: Option<String>,
 }

@@ -2,12 +2,11 @@
 
 use super::Window;
 use crate::app::commands::{PanelContext, Requests, Snapshot};
-use crate::app::model::{Model, Remembered, Tab};
+use crate::app::model::{Mode, Model, Remembered, Tab};
 use crate::app::panels::{bar, controls, first_steps, present, right, stage_panel, status};
 use crate::app::toolkit::theme;
 use crate::app::tools::dock;
 use crate::app::tools::inspector::Inspector;
-use crate::app::tools::paths::at_same_place;
 use crate::app::tracing::second::Second;
 use crate::app::viewport::display::Display;
 use crate::app::viewport::{Pictures, Touch};
@@ -137,11 +136,13 @@ impl Window {
             && touch.hovered.is_some()
         {
             let Window { display, tracing, tools, .. } = self;
-            present::magnify(ui, room, at, |ui| {
+            let view = &cx.model.view;
+            let has_scale = view.mode() == Some(Mode::Difference) || view.show().scale(&view.tone).is_some();
+            present::magnify(ui, room, at, has_scale, |ui| {
                 numbers(ui, cx, display, &tracing.second, &tools.inspector);
             });
         }
-        self.tools.inspector.hover(touch.hovered);
+        self.tools.inspector.hover(touch.hovered, touch.is_over_other);
         if let Some(said) = touch.said {
             self.shell.toasts.good(said);
         }
@@ -167,11 +168,13 @@ fn titles(snapshot: &Snapshot, second: &Second) -> [String; 2] {
 /// The numbers of the pixel under the pointer.
 fn numbers(ui: &mut Ui, snapshot: &Snapshot, display: &Display, second: &Second, inspector: &Inspector) {
     let view = &snapshot.model.view;
-    let at = inspector.pixel().map(|pixel| pixel.at);
+    let at = inspector.readout().map(|readout| readout.pixel.at);
     let value = at.filter(|_| view.show().layer().is_some()).and_then(|at| display.layers.value_at(at));
-    let size = snapshot.document().size();
-    let other = at
-        .zip(second.means(view))
-        .and_then(|(at, means)| means.mean(at_same_place(at, [size, [means.width, means.height]])));
-    inspector.ui(ui, snapshot.document(), value, other);
+    let (mine, other) = (snapshot.document(), second.film(view));
+    let theirs = match view.compared_kept() {
+        Some(kept) => view.kept.short_title(kept),
+        None => other.map(|other| other.document().place()).unwrap_or_default(),
+    };
+    let documents = [other.as_ref().map_or(mine, |other| other.document()), mine];
+    inspector.ui(ui, [&theirs, &mine.place()], documents, view.mode(), value);
 }

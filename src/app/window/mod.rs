@@ -9,8 +9,9 @@ mod receive;
 mod shell;
 
 use crate::app::commands::{Command, Snapshot};
+use crate::app::dialogs::Dialog;
 use crate::app::files::Files;
-use crate::app::files::autosave::{Autosave, picture_of};
+use crate::app::files::autosave::{Autosave, Last};
 use crate::app::model::changes::Changes;
 use crate::app::model::{Device, DeviceOptions, Document, Model, Origin, Source, Stored, Tab, ViewState};
 use crate::app::toolkit::theme;
@@ -66,29 +67,33 @@ impl Window {
         if let Some(file) = &options.file {
             remembered.note_recent(file);
         }
-        let mut autosave = Autosave::new(options.state_directory.as_deref(), options.autosave_every);
-        let last = autosave.last().filter(|_| !options.is_fresh && !options.is_picture_given);
-        let last = last.and_then(|path| Some((picture_of(&path)?.0, path)));
-        let mut document = match &last {
-            Some((document, _)) => document.clone(),
+        let goes_on = !options.is_fresh && !options.is_picture_given;
+        let directory = options.state_directory.as_deref();
+        let (autosave, Last { steps, film, has_ended_early }) =
+            Autosave::new(directory, options.autosave_every, goes_on);
+        let mut document = match steps.last() {
+            Some(document) => document.clone(),
             None if options.is_picture_given => document_of(&options),
             None => Document::new(Origin::usual()),
         };
         document.stop = options.stop.unwrap_or(document.stop);
-        autosave.is_restoring = last.is_some();
         let mut files = Files::default();
-        files.pending_resume = match (options.resume, last) {
+        files.pending_resume = match (options.resume, film) {
             (Some(path), _) => Some((path, options.recipe.job()?)),
-            (None, Some((document, path))) => Some((path, document.job(1)?)),
+            (None, Some(path)) => Some((path, document.job(1)?)),
             (None, None) => None,
         };
+        let mut shell = Shell { crashes_at: options.crashes_at, ..Shell::default() };
+        if has_ended_early && !steps.is_empty() {
+            shell.toasts.good("The last window ended early. This is the picture that it showed");
+        }
         let create = |path: &PathBuf| {
             FrameLog::create(path).with_context(|| format!("cannot write {}", path.display()))
         };
-        let frame_log = options.frame_log.as_ref().map(create).transpose()?;
+        shell.frame_log = options.frame_log.as_ref().map(create).transpose()?;
         let view = if options.is_fresh || options.is_picture_given { ViewState::default() } else { view };
         Ok(Window {
-            changes: Changes::new(document.clone()),
+            changes: Changes::of_steps(&steps, document.clone()),
             model: Model {
                 document,
                 selected: None,
@@ -99,6 +104,7 @@ impl Window {
                 is_paused: false,
                 is_full_screen: false,
                 has_first_steps,
+                steps_done: [false; 3],
                 presentation: None,
             },
             tracing: Tracing::new().context("cannot start the render thread")?,
@@ -106,7 +112,7 @@ impl Window {
             tools: Tools::default(),
             files,
             autosave,
-            shell: Shell { frame_log, crashes_at: options.crashes_at, ..Shell::default() },
+            shell,
             commands: Vec::new(),
         })
     }
@@ -148,6 +154,7 @@ impl Window {
         self.dress(&context);
         self.poll(&context);
         self.receive(&context);
+        self.follow_close(&context);
         self.take_input(&context);
         self.perform_all(&context);
         self.layout(ui);
@@ -195,8 +202,12 @@ impl Window {
     }
 
     fn take_input(&mut self, context: &egui::Context) {
-        for path in input::dropped(context) {
-            self.files.open(context, path);
+        let dropped = input::dropped(context);
+        if let Some(path) = dropped.first() {
+            self.files.open(context, path.clone());
+        }
+        if dropped.len() > 1 {
+            self.shell.toasts.good("Only the first of the files is opened");
         }
         if self.shell.dialogs.is_open() {
             return;
@@ -221,6 +232,19 @@ impl Window {
         }
     }
 
+    /// Asks before the window closes while a picture is still rendered to be saved.
+    fn follow_close(&mut self, context: &egui::Context) {
+        let is_asked = context.input(|input| input.viewport().close_requested());
+        let unsaved = self.files.unsaved().filter(|_| is_asked && !self.shell.is_interrupted());
+        if let Some(name) = unsaved {
+            context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.shell.dialogs.open(Dialog::Leave(name));
+        } else if self.shell.leaves_when_saved && !self.files.is_saving() {
+            self.shell.leaves_when_saved = false;
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+
     fn perform_all(&mut self, context: &egui::Context) {
         for command in std::mem::take(&mut self.commands) {
             self.perform(context, command);
@@ -233,10 +257,12 @@ impl Window {
         let count = self.document().scene().spheres.len();
         self.model.selected = self.model.selected.filter(|sphere| *sphere < count);
         if let Err(error) = self.document().camera.validate() {
-            self.shell.toasts.bad(error.to_string());
+            self.shell.toasts.good(error.to_string());
             self.model.document.camera = self.changes.last.camera;
         }
+        self.shell.toasts.follow(&self.model.document);
         self.ask_about_size();
+        self.model.note_steps(&self.changes.last);
         let document = &self.model.document;
         // A picture without noise ends at its own number of samples, whatever the user prefers.
         if !document.is_from_file && document.origin.usual_stop().samples.is_none() {
@@ -258,7 +284,7 @@ impl Window {
         }
         self.leave_useless_views();
         let has_second = self.tracing.follow(context, &self.model, &self.changes);
-        let Window { model, tracing, display, tools, files, autosave, shell, .. } = self;
+        let Window { model, changes, tracing, display, tools, files, autosave, shell, .. } = self;
         display.follow(context, model, tracing, is_moving, &mut shell.toasts);
         let subject = Subject::new(&model.view, &model.document, tracing);
         if let Some(found) = display.denoising.follow(context, &subject, model.view.is_denoised) {
@@ -267,11 +293,12 @@ impl Window {
         let subject = Subject::new(&model.view, &model.document, tracing);
         files.follow(context, &subject);
         files.follow_sized(context, &mut shell.toasts);
-        if !autosave.is_restoring
-            && let Some(reason) = autosave.follow(context, &model.document, tracing)
-        {
+        if let Some(reason) = autosave.follow(context, (&model.document, changes), tracing) {
             let words = format!("Autosave failed: {reason}. Rendering continues; the next save will retry");
             shell.toasts.bad(words);
+        }
+        if !autosave.has_failed() {
+            shell.toasts.end_error("Autosave failed");
         }
         tools.follow(context, model, &subject, is_moving);
         if !has_second {
@@ -310,13 +337,15 @@ impl Drop for Window {
 
 impl Window {
     fn end(&mut self) {
-        self.autosave.end(&self.model, &mut self.tracing);
+        self.files.end();
+        self.autosave.end(&self.model, &self.changes, &mut self.tracing);
     }
 }
 
 impl eframe::App for Window {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         Stored::write(self.model.remembered.clone(), self.model.view.clone(), storage);
+        Stored::forget_full_screen(storage);
     }
 
     fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {

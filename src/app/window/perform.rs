@@ -6,7 +6,7 @@ use crate::app::commands::Command;
 use crate::app::dialogs::{
     Dialog, LargeSize, Outcome, Purpose, SaveBox, What, default_folder, file_name, samples_wanted, stage_list,
 };
-use crate::app::files::autosave::picture_of;
+use crate::app::files::edits;
 use crate::app::model::spheres::grip::new_body;
 use crate::app::model::spheres::{self, Selected};
 use crate::app::model::{
@@ -61,7 +61,11 @@ impl Window {
             C::Fresh => self.start_fresh(),
             C::Quit => context.send_viewport_cmd(ViewportCommand::Close),
             C::StopSaving => files.stop_saving(),
-            C::Recover => self.autosave.left().into_iter().for_each(|path| files.open(context, path)),
+            C::Recover => self.recover(context),
+            C::DeleteLeft => {
+                self.autosave.delete_offered();
+                self.offer_left();
+            }
 
             C::Undo => self.undo(),
             C::Redo => self.redo(),
@@ -72,7 +76,7 @@ impl Window {
             C::NextSphere => model.selected = spheres::neighbour(document.scene(), model.selected, true),
             C::PreviousSphere => model.selected = spheres::neighbour(document.scene(), model.selected, false),
             C::FocusSphere => self.focus_sphere(),
-            C::SkyColours => shell.dialogs.open(Dialog::Sky),
+            C::SkyColours => self.run(context, C::Field("Sky")),
             C::Home => document.camera = document.origin.recipe.camera,
             C::AddBookmark => self.add_bookmark(),
             C::Bookmark(at) => remembered.bookmarks.get(at).iter().for_each(|to| document.camera = to.camera),
@@ -502,6 +506,11 @@ impl Window {
                 self.tracing.sizer.accepted = Some(size);
                 self.model.document.give_size(size);
             }
+            Outcome::Leave { saves: true } => self.shell.leaves_when_saved = true,
+            Outcome::Leave { saves: false } => {
+                self.files.stop_saving();
+                context.send_viewport_cmd(ViewportCommand::Close);
+            }
             Outcome::Stay | Outcome::Close => {}
         }
     }
@@ -546,15 +555,28 @@ impl Window {
         }
     }
 
-    /// Offers the film of a window that ended early.
+    /// Offers what a window has left that ended early, if the user has not answered yet.
     pub(super) fn offer_left(&mut self) {
-        let Some((document, samples)) = self.autosave.left().and_then(|path| picture_of(&path)) else {
-            return;
+        let Some((document, samples)) = self.autosave.offer() else { return };
+        let name = document.place();
+        let what = match samples {
+            Some(samples) => format!("{name} with {} samples per pixel", grouped(samples)),
+            None => format!("{name} with your changes"),
         };
-        let (name, samples) = (document.place(), grouped(samples));
-        let words =
-            format!("The last window ended early. {name} with {samples} samples per pixel was saved.");
-        self.shell.toasts.offer(words, &[Command::Recover]);
+        let words = format!("A window ended early: {what} was saved.");
+        self.shell.toasts.offer(words, &[Command::Recover, Command::DeleteLeft]);
+    }
+
+    fn recover(&mut self, context: &Context) {
+        let Some(path) = self.autosave.take_offered() else { return };
+        match edits::read(&path).pop() {
+            Some(document) => {
+                self.show_document(document);
+                self.shell.toasts.good(format!("Resumed {}", self.document().place()));
+            }
+            None => self.files.open(context, path),
+        }
+        self.offer_left();
     }
 
     pub(super) fn open_recent(&mut self, context: &Context, place: usize) {

@@ -3,7 +3,6 @@
 use super::Window;
 use crate::app::commands::Command;
 use crate::app::files::Resumed;
-use crate::app::files::autosave::document_of;
 use crate::app::model::{Dock, Document, Kept, Origin, Source};
 use crate::job::saved::{Opened, Saved};
 use crate::progressive::Stop;
@@ -16,11 +15,13 @@ impl Window {
         while let Some(outcome) = self.files.saved.take() {
             match outcome {
                 Ok(path) => {
+                    self.shell.toasts.end_error("Not saved");
                     self.model.remembered.note_recent(&path);
                     let name = path.file_name().unwrap_or(path.as_os_str()).display();
                     self.shell.toasts.good_with(format!("Saved {name}"), &[Command::ShowInFolder]);
                 }
                 Err(reason) => {
+                    self.shell.leaves_when_saved = false;
                     self.shell.toasts.bad(format!("Not saved: {reason}"));
                     self.shell.toasts.add_offers(&[Command::Save]);
                 }
@@ -41,7 +42,10 @@ impl Window {
         }
         while let Some(outcome) = self.display.kept.copied.take() {
             match outcome {
-                Ok(kept) => self.add_kept(kept),
+                Ok(kept) => {
+                    self.shell.toasts.end_error("Not kept");
+                    self.add_kept(kept);
+                }
                 Err(reason) => self.shell.toasts.bad(format!("Not kept: {reason}")),
             }
         }
@@ -65,13 +69,13 @@ impl Window {
     }
 
     fn show_opened(&mut self, Opened { path, recipe, saved, .. }: Opened) {
-        let is_left = self.autosave.left().as_ref() == Some(&path);
+        self.shell.toasts.end_error("Not opened");
+        let is_left = self.autosave.is_answered(&path);
         let mut document = match &saved {
             None => Document::new(Origin::new(recipe, Source::File(path.clone()))),
-            Some(saved) => document_of(saved, &recipe),
+            Some(saved) => Document::of_film(&recipe, saved.stage()),
         };
-        (document.has_own_size, document.is_from_file) =
-            (document.has_own_size || !is_left, document.is_from_file || !is_left);
+        (document.has_own_size, document.is_from_file) = (true, true);
         if let Some(samples) = saved.as_ref().filter(|saved| saved.film.is_none()).and_then(Saved::samples) {
             document.stop = Stop::at_samples(samples);
         }
@@ -126,6 +130,7 @@ impl Window {
                 Ok(recipe) => {
                     let reloaded = self.document().reloaded(recipe);
                     self.show_document(reloaded);
+                    self.shell.toasts.end_error("Not reloaded");
                     self.shell.toasts.good(format!("Reloaded {name}; Undo returns"));
                 }
                 Err(reason) => self.shell.toasts.bad(format!(

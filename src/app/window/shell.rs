@@ -17,6 +17,8 @@ pub struct Shell {
     /// Something had the keyboard's focus, a popup or a dialog was open, in the frame before.
     pub had_focus: bool,
     pub is_dressed: bool,
+    /// The window closes as soon as everything is saved.
+    pub leaves_when_saved: bool,
     /// Samples per pixel at which the program panics (fault injection).
     pub crashes_at: Option<u64>,
     pub interrupt: Option<Arc<Interrupt>>,

@@ -29,6 +29,22 @@ impl Damage {
     }
 }
 
+/// The error of a file that ends before its last pixel.
+#[derive(Clone, Debug)]
+pub struct Incomplete {
+    /// With the pixels that there are, fewer than its size says.
+    pub picture: Box<ReadPicture>,
+    pub reason: String,
+}
+
+impl std::fmt::Display for Incomplete {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str(&self.reason)
+    }
+}
+
+impl std::error::Error for Incomplete {}
+
 /// A picture as its file holds it, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadPicture {

@@ -8,7 +8,7 @@ mod png;
 mod ppm;
 mod read;
 
-pub use decoded::{Damage, Encoding, Linear, ReadPicture, Values, displayed};
+pub use decoded::{Damage, Encoding, Incomplete, Linear, ReadPicture, Values, displayed};
 pub use read::{decode_picture, read_picture};
 
 pub use crate::film::{Description, RECIPE_KEY, key};

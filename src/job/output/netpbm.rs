@@ -3,7 +3,7 @@
 //! Common faults are repaired and reported. Sources: the manual pages of netpbm; Paul Debevec, "PFM Portable FloatMap
 //! Image Format".
 
-use super::decoded::{Damage, ReadPicture, Values, check_memory, pixel_count};
+use super::decoded::{Damage, Incomplete, ReadPicture, Values, check_memory, pixel_count};
 use crate::film::Film;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use std::borrow::Cow;
@@ -12,6 +12,10 @@ use std::ops::ControlFlow;
 
 /// Reads a picture from the bytes of a file; of several in one file, the last.
 pub(super) fn read(file: &[u8]) -> Result<ReadPicture> {
+    ensure!(
+        !file.is_empty(),
+        "it is empty; did the program that writes it end early, or has it not written yet?"
+    );
     let mut damages = Vec::new();
     let mut file = Cow::Borrowed(file);
     if let Some(text) = from_utf16(&file) {
@@ -72,16 +76,42 @@ fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> Result<Found> {
     };
     let size = [words.number("width")?, words.number("height")?];
     let most = words.number("largest value")?;
-    let ((width, height, count), most) = (checked(size)?, checked_most(most)?);
+    let mut notes = Vec::new();
+    let ((width, height, count), most) = (checked(size)?, checked_most(most, &mut notes)?);
     let bytes_per_value = if most > 255 { 2 } else { 1 };
     let needed = count * channels * bytes_per_value;
     let mut data = Cow::Borrowed(words.payload(needed));
-    ensure!(
-        data.len() >= needed,
-        "it has {} of the {needed} bytes that {width} x {height} pixels need; write all rows, in binary mode, and not \
-         through PowerShell's >, which changes bytes",
-        data.len()
-    );
+    if let Some(body) = text_of(&data) {
+        let as_text = format!("P{} {width} {height} {most}\n{body}", if channels == 3 { 3 } else { 2 });
+        let mut own = Vec::new();
+        if let Ok(ControlFlow::Break(picture)) = text(as_text.as_bytes(), format, channels, &mut own) {
+            let remedy = "write P3 to the header, or the bytes themselves instead of numbers as text";
+            damages.push(Damage::new(
+                format!("the header says {format}, bytes, but numbers follow as text"),
+                remedy,
+            ));
+            damages.append(&mut own);
+            return Ok(Found::Break(picture));
+        }
+    }
+    if data.len() < needed {
+        let known = data.len() / (channels * bytes_per_value);
+        let reason = format!(
+            "it has {} of the {needed} bytes that {width} x {height} pixels need; write all rows, in binary mode, and not \
+             through PowerShell's >, which changes bytes",
+            data.len()
+        );
+        let values: Vec<i64> = values_of(&data, bytes_per_value);
+        let values = &values[..known * channels];
+        let picture = integers([width, height], format, most, channels, values, notes, damages);
+        return Err(Incomplete { picture: Box::new(picture), reason }.into());
+    }
+    if channels == 3 && data.len() == needed / 3 * 4 {
+        damages.push(Damage::new(FOUR_VALUES, DROP_ALPHA));
+        let values = values_of(&data, bytes_per_value);
+        let values: Vec<i64> = without_fourth(&values);
+        return Ok(Found::Break(integers([width, height], format, most, channels, &values, notes, damages)));
+    }
     if let Some(repaired) = without_returns(&data, needed) {
         damages.push(Damage::new(
             "the file was written in text mode: each byte 10 has become 13 and 10",
@@ -89,7 +119,6 @@ fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> Result<Found> {
         ));
         data = Cow::Owned(repaired);
     }
-    let mut notes = Vec::new();
     let rest = &data[needed..];
     if !rest.is_empty() {
         let blanks = rest.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
@@ -99,12 +128,31 @@ fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> Result<Found> {
         notes.push(format!("{} bytes after the pixels are ignored", rest.len()));
     }
     check_memory(width, height, 0)?;
-    let data = &data[..needed];
-    let values: Vec<i64> = match bytes_per_value {
+    let values = values_of(&data[..needed], bytes_per_value);
+    Ok(Found::Break(integers([width, height], format, most, channels, &values, notes, damages)))
+}
+
+const FOUR_VALUES: &str =
+    "there are four numbers per pixel, probably with an alpha channel, and a PPM has three";
+const DROP_ALPHA: &str = "write only red, green and blue";
+
+fn without_fourth(values: &[i64]) -> Vec<i64> {
+    values.chunks_exact(4).flat_map(|pixel| &pixel[..3]).copied().collect()
+}
+
+fn values_of(data: &[u8], bytes_per_value: usize) -> Vec<i64> {
+    match bytes_per_value {
         1 => data.iter().copied().map(i64::from).collect(),
         _ => data.as_chunks::<2>().0.iter().map(|pair| u16::from_be_bytes(*pair).into()).collect(),
-    };
-    Ok(Found::Break(integers([width, height], format, most, channels, &values, notes, damages)))
+    }
+}
+
+/// The body of a file as text, if it is nothing but numbers.
+fn text_of(data: &[u8]) -> Option<&str> {
+    let is_text =
+        |byte: &u8| byte.is_ascii_digit() || byte.is_ascii_whitespace() || matches!(byte, b'.' | b',' | b'-');
+    let is_all = data.len() > 64 && data.iter().all(is_text);
+    std::str::from_utf8(data).ok().filter(|_| is_all)
 }
 
 /// The picture of values that may be outside of their range.
@@ -139,7 +187,7 @@ fn integers(
 
 /// Reads numbers written as text, leaving out what does not belong.
 fn text(file: &[u8], format: &'static str, channels: usize, damages: &mut Vec<Damage>) -> Result<Found> {
-    let (mut messages, mut lines, mut at) = (0, Vec::new(), 0);
+    let (mut messages, mut bracketed, mut lines, mut at) = (0, 0, Vec::new(), 0);
     for line in file.split_inclusive(|byte| matches!(byte, b'\n' | b'\r')) {
         if at > 0 && is_header(line) {
             return Ok(Found::Continue(at));
@@ -147,7 +195,11 @@ fn text(file: &[u8], format: &'static str, channels: usize, damages: &mut Vec<Da
         let content = if at == 0 { &line[2..] } else { line };
         at += line.len();
         let content = content.split(|byte| *byte == b'#').next().unwrap_or_default();
-        let content = String::from_utf8_lossy(content.trim_ascii());
+        let mut content = String::from_utf8_lossy(content.trim_ascii());
+        if let Some(bare) = without_brackets(&content) {
+            bracketed += 1;
+            content = Cow::Owned(bare);
+        }
         if content.starts_with(char::is_alphabetic) && !content.starts_with("nan") {
             messages += 1;
         } else if !content.is_empty() {
@@ -160,15 +212,36 @@ fn text(file: &[u8], format: &'static str, channels: usize, damages: &mut Vec<Da
             "write messages such as \"Scanlines remaining\" to std::clog, not to std::cout",
         ));
     }
+    if bracketed > 0 {
+        damages.push(Damage::new(
+            "there are brackets or semicolons between the numbers",
+            "write the three numbers of a pixel alone, separated by spaces: in Python, print(r, g, b) and not print((r, g, b))",
+        ));
+    }
     let words = || lines.iter().flat_map(|line| line.split_ascii_whitespace());
     let head: Vec<i64> = words().take(3).filter_map(|word| word.trim_matches(',').parse().ok()).collect();
     let [width, height, most] = *head.as_slice() else {
         bail!("its header is not complete; {HEADER}");
     };
-    let [width, height, most] = [width, height, most].map(|number| number.max(0) as u64);
-    let ((width, height, count), most) = (checked([width, height])?, checked_most(most)?);
-    let needed = count * channels;
+    let mut head = [width, height, most].map(|number| number.max(0) as u64);
     let words = || words().skip(3);
+    // A largest value that stands first, as the product of the sides shows.
+    let numbers = words().count() as u64;
+    if head[0] == 255 && numbers == head[1].saturating_mul(head[2]).saturating_mul(channels as u64) {
+        damages.push(Damage::new("the largest value stands before width and height", HEADER));
+        head.rotate_left(1);
+    }
+    let mut notes = Vec::new();
+    let [width, height, most] = head;
+    let ((width, height, count), most) = (checked([width, height])?, checked_most(most, &mut notes)?);
+    let needed = count * channels;
+    if let Some(bytes) = body_of_bytes(file, needed) {
+        damages.clear();
+        let remedy = "write P6 to the header, or numbers as text";
+        damages.push(Damage::new(format!("the header says {format}, text, but bytes follow"), remedy));
+        let values = values_of(bytes, 1);
+        return Ok(Found::Break(integers([width, height], format, most, channels, &values, notes, damages)));
+    }
     let has_commas = words().any(|word| word.trim_end_matches(',').contains(','));
     // With decimal commas, there are as many words as numbers.
     let has_decimal_commas = has_commas && words().count() >= needed;
@@ -201,13 +274,39 @@ fn text(file: &[u8], format: &'static str, channels: usize, damages: &mut Vec<Da
             "convert each channel with int(256 * clamp(x, 0, 0.999)) before it is written",
         ));
     }
-    ensure!(
-        values.len() >= needed,
-        "{width} x {height} pixels need {needed} numbers, but there are {}: {} of {height} rows; check the loops, width and \
-         height of the header, and whether the program ended early",
-        values.len(),
-        values.len() / (channels * width as usize)
-    );
+    let mut channels = channels;
+    let as_read = [
+        (1, 3, "P2, grey, but there are three numbers per pixel", "write P3"),
+        (3, 1, "P3, colours, but there is one number per pixel", "write P2"),
+    ];
+    for (of, really, title, remedy) in as_read {
+        if channels == of && count > 1 && values.len() == count * really {
+            damages.push(Damage::new(format!("the header says {title}"), remedy));
+            channels = really;
+            break;
+        }
+    }
+    let needed = count * channels;
+    if channels == 3 && values.len() == needed / 3 * 4 {
+        damages.push(Damage::new(FOUR_VALUES, DROP_ALPHA));
+        values = without_fourth(&values);
+    }
+    if values.len() < needed {
+        let together = values.iter().filter(|value| **value > 1000 * i64::from(most)).count();
+        ensure!(
+            2 * together < values.len() || together == 0,
+            "its numbers run together; write a space or a new line after each"
+        );
+        let reason = format!(
+            "{width} x {height} pixels need {needed} numbers, but there are {}: {} of {height} rows; check the loops, width \
+             and height of the header, and whether the program ended early",
+            values.len(),
+            values.len() / (channels * width as usize)
+        );
+        values.truncate(values.len() / channels * channels);
+        let picture = integers([width, height], format, most, channels, &values, notes, damages);
+        return Err(Incomplete { picture: Box::new(picture), reason }.into());
+    }
     if values.len() > needed {
         damages.push(Damage::new(
             format!("there are {} numbers, but {width} x {height} pixels need {needed}", values.len()),
@@ -216,7 +315,41 @@ fn text(file: &[u8], format: &'static str, channels: usize, damages: &mut Vec<Da
     }
     check_memory(width, height, 0)?;
     let values = &values[..needed];
-    Ok(Found::Break(integers([width, height], format, most, channels, values, Vec::new(), damages)))
+    Ok(Found::Break(integers([width, height], format, most, channels, values, notes, damages)))
+}
+
+/// A line without brackets, semicolons and the names before brackets, if it has some and only numbers remain.
+fn without_brackets(line: &str) -> Option<String> {
+    let is_bracket = |letter: char| "()[]{}<>;".contains(letter);
+    if !line.contains(is_bracket) {
+        return None;
+    }
+    let bare: Vec<&str> = line
+        .split(is_bracket)
+        .map(|part| part.trim_end_matches(|letter: char| letter.is_alphanumeric() || "_.:".contains(letter)))
+        .zip(line.split(is_bracket))
+        // A name is what stands right before a bracket and begins with a letter.
+        .map(
+            |(before, part)| {
+                if part[before.len()..].starts_with(char::is_alphabetic) { before } else { part }
+            },
+        )
+        .collect();
+    let bare = bare.join(" ");
+    let is_number =
+        |letter: char| letter.is_ascii_digit() || letter.is_ascii_whitespace() || "+-.,eE".contains(letter);
+    (bare.chars().all(is_number) && bare.contains(|letter: char| letter.is_ascii_digit()))
+        .then(|| bare.replace(',', " "))
+}
+
+/// The bytes after a text header, if they are as many as the pixels need and are not text.
+fn body_of_bytes(file: &[u8], needed: usize) -> Option<&[u8]> {
+    let mut words = Words { file, at: 2 };
+    (0..3).for_each(|_| drop(words.next()));
+    let data = words.payload(needed);
+    let binary =
+        data.iter().filter(|byte| !byte.is_ascii() || byte.is_ascii_control() && !byte.is_ascii_whitespace());
+    (data.len() == needed && 10 * binary.count() > needed).then_some(data)
 }
 
 /// Reads a PFM, whose lowest row comes first.
@@ -287,8 +420,12 @@ fn checked([width, height]: [u64; 2]) -> Result<(u32, u32, usize)> {
     Ok((width, height, pixel_count(width, height)?))
 }
 
-fn checked_most(most: u64) -> Result<u16> {
+fn checked_most(most: u64, notes: &mut Vec<String>) -> Result<u16> {
     match u16::try_from(most) {
+        Ok(256) => {
+            notes.push("its largest value is 256, which is read as 255; write 255 to the header".to_owned());
+            Ok(255)
+        }
         Ok(most @ 1..) => Ok(most),
         _ => bail!("its largest value is {most}; write 255 after width and height"),
     }

@@ -1,6 +1,8 @@
 //! Reads pictures of any program: PNG, EXR, and Netpbm's formats.
 
-use super::decoded::{PIXEL_LIMIT, ReadPicture, Values, check_memory, note_on_alpha, pixel_count};
+use super::decoded::{
+    Incomplete, PIXEL_LIMIT, ReadPicture, Values, check_memory, note_on_alpha, pixel_count,
+};
 use super::{exr, netpbm, png};
 use crate::film::checkpoint;
 use crate::system::files::{self, ShownPath};
@@ -17,8 +19,14 @@ use std::path::Path;
 /// If the file cannot be read or is not such a picture.
 pub fn read_picture(path: &Path, layer: Option<&str>) -> Result<ReadPicture> {
     let (file, length) = files::open(path)?;
-    decode_picture(BufReader::new(file), length, layer)
-        .map_err(|reason| anyhow!("cannot read {}: {reason}", path.shown()))
+    decode_picture(BufReader::new(file), length, layer).map_err(|error| {
+        match error.downcast::<Incomplete>() {
+            Ok(Incomplete { picture, reason }) => {
+                Incomplete { picture, reason: format!("cannot read {}: {reason}", path.shown()) }.into()
+            }
+            Err(reason) => anyhow!("cannot read {}: {reason}", path.shown()),
+        }
+    })
 }
 
 /// As [`read_picture`], from a reader of `length` bytes.

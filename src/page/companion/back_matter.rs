@@ -15,18 +15,12 @@ pub struct Term {
     pub area: Area,
 }
 
+/// A part of the glossary: light, pictures and noise; lanes, threads and devices; how numbers are stored and rounded;
+/// words of Rust, WGSL and C++.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
-pub enum Area {
-    /// Light, pictures and noise.
-    Rendering,
-    /// Lanes, threads and devices.
-    Parallelism,
-    /// How numbers are stored and rounded.
-    Numbers,
-    /// Words of Rust, WGSL and C++.
-    Languages,
-}
+#[rustfmt::skip]
+pub enum Area { Rendering, Parallelism, Numbers, Languages }
 
 /// A work cited in the text.
 #[derive(Clone, Debug, Deserialize)]

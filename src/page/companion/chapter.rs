@@ -32,6 +32,9 @@ pub struct Facts {
     /// Symbols of formulas and names in code, with the number of their colour.
     #[serde(default)]
     pub colours: BTreeMap<String, u8>,
+    /// Names in the text that are not in the code beside it.
+    #[serde(default)]
+    pub elsewhere: Vec<String>,
 }
 
 /// Number in the file's name of the first chapter that is not the book's.

@@ -17,7 +17,7 @@ use anyhow::{Context, Error, Result, bail};
 use maud::{Markup, PreEscaped, html};
 
 /// The directives and their arguments. More lines hold a caption, or what to quote.
-const KNOWN: &str = "figure ID, code, mistakes STAGE, limits STAGE, denoised STAGE SAMPLES, table NAME, chart NAME, diagram NAME, timeline STAGE, glossary, references";
+const KNOWN: &str = "figure ID, code, fold TITLE, unfold, mistakes STAGE, limits STAGE, samples STAGE, denoised STAGE SAMPLES, table NAME, chart NAME, diagram NAME, timeline STAGE, glossary, references";
 
 /// The HTML of a directive, given without its braces.
 pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) -> Result<Markup> {
@@ -38,7 +38,13 @@ pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) ->
         }
         ["code"] => code(site, place, more),
         ["mistakes", stage] => pictures::mistakes(stage, more, uses),
-        ["limits", stage] => pictures::limits(stage, more, uses),
+        ["limits", stage] => pictures::variants(stage, more, false, uses),
+        ["samples", stage] => pictures::variants(stage, more, true, uses),
+        ["fold", ..] => {
+            let title = place.inside(site, &words[1..].join(" "), uses)?;
+            Ok(PreEscaped(format!("<details class=\"fold\"><summary>{}</summary>", title.0)))
+        }
+        ["unfold"] => Ok(PreEscaped("</details>".to_owned())),
         ["denoised", stage, samples] => {
             let caption = caption()?.context("a figure of denoising needs a caption")?;
             let panels = pictures::denoised(stage, samples, uses)?;
@@ -103,34 +109,40 @@ fn figure(id: &str, caption: Option<Markup>, crop: Option<[f64; 4]>, uses: &mut 
     })
 }
 
-/// Excerpts, one a line, with a switch between their languages.
+/// Order of the switch between languages.
+const LANGUAGES: [&str; 3] = ["c", "wgsl", "rs"];
+
+/// Excerpts, one a line, with a switch between their languages. The first is open.
 fn code(site: &Site, place: &Place<'_>, wanted: &str) -> Result<Markup> {
     let excerpts: Result<Vec<Excerpt>, String> =
         wanted.lines().map(|line| excerpt::cut(&site.library, line)).collect();
     let excerpts = excerpts.map_err(Error::msg)?;
-    let language = |excerpt: &Excerpt| excerpt.file.rsplit('.').next().unwrap_or_default().to_owned();
-    let mut languages: Vec<String> = excerpts.iter().map(language).collect();
+    let mut languages: Vec<&str> = excerpts.iter().map(Excerpt::language).collect();
+    let open = languages.first().copied().unwrap_or_default();
+    languages.sort_by_key(|language| LANGUAGES.iter().position(|known| known == language));
     languages.dedup();
     Ok(html! {
         div .tabbed {
             @if languages.len() > 1 {
                 div .tabs role="group" aria-label="Language" {
-                    @for (index, language) in languages.iter().enumerate() {
-                        button type="button" data-language=(language) aria-pressed=(index == 0) {
-                            @match language.as_str() { "rs" => "Rust", other => (other.to_uppercase()) }
+                    @for language in &languages {
+                        button type="button" data-language=(language) aria-pressed=(*language == open) {
+                            @match *language { "rs" => "Rust", other => (other.to_uppercase()) }
                         }
                     }
                 }
             }
             @for excerpt in &excerpts {
-                @let language = language(excerpt);
+                @let language = excerpt.language();
                 @let Excerpt { file, first, last, text } = excerpt;
-                figure .code .shown[language == languages[0]] data-language=(language) {
+                figure .code .shown[language == open] data-language=(language) {
                     figcaption {
                         code .path { (file) } " "
                         span .lines { @if first == last { "line " (first) } @else { "lines " (first) " to " (last) } }
                     }
-                    pre { code { (place.coloured(&site.highlighter.html(&language, text)?)) } }
+                    @let code = site.highlighter.html(language, text)?;
+                    // The others have names of their own.
+                    pre { code { (if language == open { place.coloured(&code) } else { code }) } }
                 }
             }
         }

@@ -22,6 +22,13 @@ pub struct Excerpt {
     pub text: String,
 }
 
+impl Excerpt {
+    /// The file's extension.
+    pub fn language(&self) -> &str {
+        self.file.rsplit('.').next().unwrap_or_default()
+    }
+}
+
 /// Cuts `FILE: ITEM`, which is an item, statement or block, or `FILE: FIRST ... LAST`, which ends with the item `LAST`.
 /// All three are the first words of a line.
 pub fn cut(library: &Library, wanted: &str) -> Result<Excerpt, String> {
@@ -118,7 +125,7 @@ pub fn excerpts_between(after: Option<&str>, section: &str) -> Vec<Excerpt> {
         }
     }
     // The window has switches for these languages.
-    found.retain(|excerpt| [".c", ".rs", ".wgsl"].iter().any(|ending| excerpt.file.ends_with(ending)));
+    found.retain(|excerpt| ["c", "rs", "wgsl"].contains(&excerpt.language()));
     found
 }
 

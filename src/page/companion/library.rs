@@ -45,18 +45,19 @@ const FILES: &[(&str, &str)] = embedded![
         "27-references.md" "28-glossary.md" "glossary.toml" "measured.toml"
         "references.toml";
     "docs/companion/measured/": "error.json" "mappings.json" "refill.json" "speed.json";
-    "docs/companion/diagrams/": "cosine.svg" "error.svg" "fuzz.svg" "hierarchy.svg" "lanes.svg" "lens.svg" "life-cycle.svg"
-        "mappings.svg" "path.svg" "pipeline.svg" "points.svg" "select.svg" "snell.svg" "sphere.svg";
+    "docs/companion/diagrams/": "basis.svg" "cosine.svg" "error.svg" "floats.svg" "fuzz.svg" "hero.svg" "hierarchy.svg"
+        "lanes.svg" "lens.svg" "life-cycle.svg" "mappings.svg" "path.svg" "pipeline.svg" "points.svg" "rows.svg" "select.svg"
+        "shell.svg" "sides.svg" "snell.svg" "sphere.svg" "subtract.svg" "viewport.svg";
     "assets/companion/": "diagrams.js" "fonts.css" "page.css" "page.js" "theme.js";
-    "assets/scenes/": "hollow-glass.toml";
     "assets/web/": "film.js" "live.css" "live.js" "scene.js";
     "examples/": "lanes.rs";
     "reference/": "rt_weekend.c";
     "shaders/": "bindings.wgsl" "bvh.wgsl" "camera.wgsl" "lanes.wgsl" "material.wgsl"
         "path.wgsl" "resolve.wgsl" "rng.wgsl" "rules.wgsl" "sphere.wgsl" "suspend.wgsl";
+    "src/batch/": "progress.rs";
     "src/denoise/": "mod.rs";
     "src/film/": "error_estimate.rs" "fixed_point.rs" "resolve.rs";
-    "src/kernel/": "records.rs";
+    "src/kernel/": "constants.rs" "records.rs";
     "src/job/output/": "ppm.rs";
     "src/prepared/": "camera.rs" "mod.rs";
     "src/render_cpu/": "bvh.rs" "camera.rs" "kernels.rs" "material.rs" "rng.rs" "sphere.rs" "tiles.rs"

@@ -32,8 +32,6 @@ struct Kept {
     file: String,
     /// The command that produces such a file.
     command: String,
-    /// The machine, if the file does not name it.
-    machine: Option<String>,
     /// The day of the measurement.
     date: String,
     #[serde(skip)]
@@ -118,8 +116,7 @@ impl Measured {
 fn speed_tables(kept: &Kept) -> Result<Markup> {
     let json = &kept.json;
     ensure!(json["schema"] == measure::SCHEMA, "is no benchmark of version {}", measure::SCHEMA);
-    let machine = format!("{}, {} cores", text(&json["machine"]["processor"]), json["machine"]["cores"]);
-    let columns = ["tracer", SPEED, "× C89", "lanes in use", "1/(MSE s)"];
+    let columns = ["tracer", SPEED, "× C89", "lanes in use"];
     let table = |scene: &Value| {
         let rows = items(&scene["rows"]);
         let row = |row: &Value| match row["skipped"].as_str() {
@@ -129,7 +126,6 @@ fn speed_tables(kept: &Kept) -> Result<Markup> {
                 speed(row, rows),
                 shown(row["ratio_to_baseline"].as_f64(), |ratio| format!("{ratio:.2}")),
                 shown(row["lanes_in_use"].as_f64(), percent),
-                shown(row["efficiency"].as_f64(), |efficiency| digits(efficiency, 2)),
             ],
         };
         let name = text(&scene["scene"]);
@@ -137,7 +133,7 @@ fn speed_tables(kept: &Kept) -> Result<Markup> {
             ["width", "height", "max_depth", "spheres"].map(|key| &scene[key]);
         let caption = html! {
             strong { (name) } ", " (width) " × " (height) ", at most " (depth) " rays per path, " (spheres) " spheres. "
-            "Median and range of the runs. " (origin(kept, Some(&machine)))
+            "Median and range of the runs. " (origin(kept))
         };
         table(&format!("Speed of {name}"), &caption, &columns, rows.iter().map(row))
     };
@@ -155,8 +151,7 @@ fn comparison(kept: &Kept) -> Result<Markup> {
         cells.extend(has_use.then(|| shown(row["in_use"].as_f64(), percent)));
         cells
     };
-    let caption =
-        html! { (about) " Median and range of the runs. " (origin(kept, kept.json["machine"].as_str())) };
+    let caption = html! { (about) " Median and range of the runs. " (origin(kept)) };
     let columns = ["who traces what", SPEED, "× the first", "lanes in use"];
     Ok(table(about, &caption, &columns[..if has_use { 4 } else { 3 }], rows.iter().map(row)))
 }
@@ -186,10 +181,10 @@ fn error_table(kept: &Kept) -> Result<Markup> {
     }
     let (width, height) = data.settings.size;
     let caption = html! {
-        "Time until the RMSE has fallen to .01 and to .001, " (width) " × " (height) ", " (data.settings.seeds) " pictures each. \
-         Times with ~ are extrapolated. The last column compares the times to .01. " (origin(kept, None))
+        "Time until the RMSE has fallen to 0.01 and to 0.001, " (width) " × " (height) ", " (data.settings.seeds) " pictures each. \
+         Times with ~ are extrapolated. The last column compares the times to 0.01. " (origin(kept))
     };
-    let columns = ["tracer, random numbers", "slope", "to .01", "to .001", "× C89"];
+    let columns = ["tracer, random numbers", "slope", "to 0.01", "to 0.001", "× C89"];
     Ok(table("Time to an error", &caption, &columns, rows.into_iter()))
 }
 
@@ -212,7 +207,7 @@ fn error_chart(kept: &Kept, uses: &mut Uses) -> Result<Markup> {
             (numbered(&html! {
                 "Error against time. Lower and further left is better; the dashed slope is half the error in four times the time. "
                 em { "cpu" } ": packets on all threads; " em { "scalar" } ": one lane on all threads; "
-                em { "c89" } ": the C program on one thread. " (origin(kept, None))
+                em { "c89" } ": the C program on one thread. " (origin(kept))
             }, uses))
         }
     })
@@ -261,13 +256,12 @@ fn table(name: &str, caption: &Markup, columns: &[&str], rows: impl Iterator<Ite
 }
 
 /// The line below a table: where and how it was measured.
-fn origin(kept: &Kept, machine: Option<&str>) -> Markup {
+fn origin(kept: &Kept) -> Markup {
+    let machine = &kept.json["machine"];
     html! {
-        "Measured on " (kept.date)
-        @if let Some(machine) = machine.or(kept.machine.as_deref()) { ", " (machine) }
-        ", by "
-        (code_words(&kept.command))
-        "."
+        "Measured on " (kept.date) ", " (text(machine))
+        @if machine.is_object() { (text(&machine["processor"])) ", " (machine["cores"]) " cores" }
+        ", by " (code_words(&kept.command)) "."
     }
 }
 
@@ -326,7 +320,7 @@ mod tests {
 
     fn kept(json: &Value) -> Kept {
         let (file, command) = ("a.json".to_owned(), "make it".to_owned());
-        Kept { file, command, machine: None, date: "1 May".to_owned(), json: json.clone() }
+        Kept { file, command, date: "1 May".to_owned(), json: json.clone() }
     }
 
     /// The text of each row's cells.
@@ -346,7 +340,7 @@ mod tests {
     #[test]
     fn benchmark_table_rows() {
         let speeds = |median: f64| json!({"median": median, "min": 0.5 * median, "max": 2.0 * median});
-        let row = |name: &str, speed: Value, skipped: Option<&str>| json!({"name": name, "paths_per_second": speed, "skipped": skipped, "lanes_in_use": 0.875, "ratio_to_baseline": 8.0, "efficiency": 1234.0});
+        let row = |name: &str, speed: Value, skipped: Option<&str>| json!({"name": name, "paths_per_second": speed, "skipped": skipped, "lanes_in_use": 0.875, "ratio_to_baseline": 8.0});
         let bench = |schema: u32| {
             let rows = [
                 row("C89, cc -O2, 1 thread", speeds(5e6), None),
@@ -360,8 +354,8 @@ mod tests {
         assert_eq!(
             rows(&html),
             [
-                &["C89, cc -O2, 1 thread", "5.00 2.50–10.0", "8.00", "87.5 %", "1,200"][..],
-                &["avx2, 8 lanes, 3 threads", "40.0 20.0–80.0", "8.00", "87.5 %", "1,200"],
+                &["C89, cc -O2, 1 thread", "5.00 2.50–10.0", "8.00", "87.5 %"][..],
+                &["avx2, 8 lanes, 3 threads", "40.0 20.0–80.0", "8.00", "87.5 %"],
                 &["other GPU", "not measured: it has no memory"],
             ]
         );

@@ -1,6 +1,7 @@
 //! `weekender companion`: one web page that follows the book, built from the texts in `docs/companion`, the sources,
 //! the gallery's stills and measurements.
 
+mod agreement;
 mod back_matter;
 mod chapter;
 mod directive;

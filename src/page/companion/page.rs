@@ -1,5 +1,7 @@
 //! The page around the chapters.
 
+use super::agreement;
+use super::chapter::Chapter;
 use super::directive;
 use super::library::Fault;
 use super::picture::Picture;
@@ -29,11 +31,11 @@ pub struct Page {
 /// Renders everything. Fails with the first [`Fault`] of the texts, or if a stage has no data for a browser.
 pub fn render(site: &Site) -> Result<Page> {
     let mut uses = Uses::default();
-    uses.anchors.extend(site.chapters.iter().map(|chapter| chapter.id.clone()));
-    let chapters = html! {
-        @for place in 0..site.chapters.len() { (section(site, place, &mut uses)?) }
+    let content = html! {
+        (cover())
+        @for chapter in &site.chapters { (section(site, chapter, &mut uses)?) }
     };
-    site.check(&uses)?;
+    site.check(&uses, &content.0)?;
     let mut stages: Vec<&Stage> =
         uses.figures.iter().flat_map(|figure| &figure.panels).map(Panel::stage).collect();
     stages.push(cover_stage());
@@ -41,7 +43,7 @@ pub fn render(site: &Site) -> Result<Page> {
     stages.dedup();
     let live = web::live_data(stages.iter().copied())?;
     uses.pictures.push(Picture::small(cover_stage()));
-    let page = document(site, &chapters, &PreEscaped(live))?;
+    let page = document(site, &content, &PreEscaped(live))?;
     Ok(Page { html: page.into_string(), stages, pictures: uses.pictures })
 }
 
@@ -51,7 +53,7 @@ fn cover_stage() -> &'static Stage {
 }
 
 /// Styles and scripts are read like the texts, so that an author sees a change at once.
-fn document(site: &Site, chapters: &Markup, live: &Markup) -> Result<Markup, Fault> {
+fn document(site: &Site, content: &Markup, live: &Markup) -> Result<Markup, Fault> {
     let assets = |names: &[&str]| -> Result<Markup, Fault> {
         let texts: Result<Vec<_>, _> =
             names.iter().map(|name| site.library.read(&format!("assets/{name}"))).collect();
@@ -76,11 +78,9 @@ fn document(site: &Site, chapters: &Markup, live: &Markup) -> Result<Markup, Fau
                 a .skip href="#content" { "Skip to the text" }
                 (navigation(site))
                 main id="content" tabindex="-1" {
-                    (cover())
-                    (chapters)
+                    (content)
                     (colophon())
                 }
-                div .tip id="tip" role="tooltip" hidden {}
                 script { (assets(&["companion/page.js"])?) }
                 script type="module" { (assets(&["companion/diagrams.js"])?) }
                 script type="application/json" id="live-data" { (live) }
@@ -142,29 +142,21 @@ fn navigation(site: &Site) -> Markup {
                             }
                         }
                     }
-                    fieldset .theme hidden {
-                        legend { "Colours" }
-                        @for (value, label) in [("auto", "Auto"), ("light", "Light"), ("dark", "Dark")] {
-                            label { input type="radio" name="theme" value=(value) checked[value == "auto"]; span { (label) } }
-                        }
-                    }
                 }
             }
         }
     }
 }
 
-fn section(site: &Site, place: usize, uses: &mut Uses) -> Result<Markup, Fault> {
-    let chapter = &site.chapters[place];
+fn section(site: &Site, chapter: &Chapter, uses: &mut Uses) -> Result<Markup, Fault> {
     let (id, title) = (&chapter.id, &chapter.facts.title);
     let text = prose::chapter(site, chapter, directive::html, uses)?;
+    agreement::check(&site.library, chapter)?;
     let of_book = |number| {
         let found = heading(number).map(|heading| (number, book_url(number), heading));
         found.ok_or_else(|| Fault::new(&chapter.file, 1, format!("the book has no chapter {number:?}")))
     };
     let book = chapter.facts.book.as_deref().map(of_book).transpose()?;
-    let before = place.checked_sub(1).and_then(|place| site.chapters.get(place));
-    let after = site.chapters.get(place + 1);
     Ok(html! {
         section .chapter aria-labelledby=(id) {
             header .head {
@@ -183,14 +175,6 @@ fn section(site: &Site, place: usize, uses: &mut Uses) -> Result<Markup, Fault> 
                 }
             }
             (text)
-            nav .turn aria-label={ "Before and after " (title) } {
-                @if let Some(before) = before {
-                    a .before href={ "#" (before.id) } { span { "Previous" } (before.number_prefix()) (before.short()) }
-                }
-                @if let Some(after) = after {
-                    a .after href={ "#" (after.id) } { span { "Next" } (after.number_prefix()) (after.short()) }
-                }
-            }
         }
     })
 }

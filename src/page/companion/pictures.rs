@@ -33,17 +33,23 @@ pub fn mistakes(stage: &str, ids: &str, uses: &mut Uses) -> Result<Markup> {
     })
 }
 
-/// A row of pictures of a stage with these limits on the rays of a path.
-pub fn limits(stage: &str, limits: &str, uses: &mut Uses) -> Result<Markup> {
+/// A row of pictures of a stage with these limits on the rays of a path or, if `is_of_samples`, with so many samples.
+pub fn variants(stage: &str, numbers: &str, is_of_samples: bool, uses: &mut Uses) -> Result<Markup> {
     let stage = Stage::find(stage)?;
-    let limits: Result<Vec<u32>, _> = limits.split_whitespace().map(str::parse).collect();
-    let limits = limits.context("the limits are whole numbers")?;
-    let mut shown = |limit| {
-        let mut picture = Picture::new(stage, "limit", SMALL, Tracer::Fast);
-        picture.recipe.settings.max_depth = limit;
-        entry(picture, &format!("at most {} per path", counted(limit.into(), "ray")), "", uses)
+    let numbers: Result<Vec<u32>, _> = numbers.split_whitespace().map(str::parse).collect();
+    let mut shown = |number: u32| {
+        let mut picture =
+            Picture::new(stage, if is_of_samples { "samples" } else { "limit" }, SMALL, Tracer::Fast);
+        let title = if is_of_samples {
+            picture.recipe.samples_per_pixel = number.into();
+            counted(number.into(), "sample") + " per pixel"
+        } else {
+            picture.recipe.settings.max_depth = number;
+            format!("at most {} per path", counted(number.into(), "ray"))
+        };
+        entry(picture, &title, "", uses)
     };
-    Ok(html! { ul .mistakes { @for limit in limits { (shown(limit)) } } })
+    Ok(html! { ul .mistakes { @for number in numbers.context("give whole numbers")? { (shown(number)) } } })
 }
 
 fn entry(picture: Picture, title: &str, remedy: &str, uses: &mut Uses) -> Markup {

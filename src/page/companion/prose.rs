@@ -67,7 +67,8 @@ impl Place<'_> {
         while let Some(first) = rest.chars().next() {
             let end = rest.find(|c| is_word(c) != is_word(first)).unwrap_or(rest.len());
             let (word, after) = rest.split_at(end);
-            match colours.get(word).filter(|_| !in_tag && !found.ends_with('&')) {
+            let is_function = after.starts_with('(') || after.starts_with("</span>(");
+            match colours.get(word).filter(|_| !in_tag && !is_function && !found.ends_with('&')) {
                 Some(colour) => drop(write!(found, "<span class=\"q{colour}\">{word}</span>")),
                 None => found.push_str(word),
             }

@@ -15,7 +15,7 @@ pub struct Uses {
     pub figures: Vec<&'static Figure>,
     /// How many figures have a number so far.
     pub numbered_figures: usize,
-    /// Existing anchors.
+    /// Anchors of headings and figures, which must be unique.
     pub anchors: BTreeSet<String>,
     /// Linked anchors, each with file and line.
     pub targets: Vec<(String, String, usize)>,

@@ -1,8 +1,11 @@
 //! The answer of a check, from which the text and the window's view are made.
 
+use super::hypothesis::{Compared, Fit, Hypothesis, compare};
+use super::tracer::{Steps, Tracer};
+use super::written::Seen;
 use super::{Damage, Finding, Mine};
 use crate::pictures::answer::Verdict;
-use crate::stages::{Shading, Stage, book_url};
+use crate::stages::{Shading, Stage, book_url, heading};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AnswerKind {
@@ -45,17 +48,18 @@ pub struct Section {
 }
 
 impl Section {
-    /// The section with this number, if a stage or a mistake has it.
+    /// The section with this number, if the book has it.
     fn find(number: &'static str) -> Option<Section> {
-        // Most sections are those of a stage; four of the mistakes belong to sections without a picture.
-        let stage = match number {
-            "3.1" => "ppm-gradient",
-            "6.2" => "normals",
-            "6.4" => "normals-world",
-            "8.2" => "antialiased",
-            _ => Stage::ALL.iter().find(|stage| stage.section == number)?.id,
+        let place = |section: &str| {
+            let (chapter, rest) = section.split_once('.')?;
+            Some((chapter.parse::<u32>().ok()?, rest.parse::<u32>().ok()?))
         };
-        Some(Section { number, url: book_url(number), stage: Stage::find(stage).ok()? })
+        heading(number)?;
+        let own = Stage::walk().filter(|stage| stage.section == number);
+        // Of several, the first that shows what the section adds, and not only what was there before.
+        let own = own.rev().max_by_key(|stage| stage.setup.samples_per_pixel > 1);
+        let before = || Stage::walk().rev().find(|stage| place(stage.section) < place(number));
+        Some(Section { number, url: book_url(number), stage: own.or_else(before)? })
     }
 }
 
@@ -76,7 +80,11 @@ impl Answer {
 
     /// A right picture in a damaged file counts as different, because other programs cannot read it.
     pub fn verdict(&self) -> Verdict {
-        if self.kind == AnswerKind::Right { Verdict::Same } else { Verdict::Different }
+        match self.kind {
+            AnswerKind::Right => Verdict::Same,
+            AnswerKind::CannotCheck => Verdict::Unclear,
+            AnswerKind::Mistake | AnswerKind::LikelyMistake | AnswerKind::Unknown => Verdict::Different,
+        }
     }
 }
 
@@ -92,22 +100,38 @@ impl Finding {
             evidence: self.evidence(mine),
             damages: mine.damages.clone(),
         };
-        if let (Some(found), Some(mistake)) = (&self.mistake, self.named()) {
-            let title = capitalised(mistake.title);
-            (answer.kind, answer.title, answer.explanation) = if found.is_noise {
-                (AnswerKind::Mistake, title, "It is the only mistake; all else matches".to_owned())
-            } else {
-                let doubt = "It does not explain everything, so there may be a second mistake".to_owned();
-                (AnswerKind::LikelyMistake, format!("{title}, most likely"), doubt)
+        if let Some(mistake) = self.named().filter(|_| self.is_other_right()) {
+            answer.title = "It is right for the book, though not the same as ours".to_owned();
+            answer.explanation = capitalised(mistake.title);
+            answer.remedy = Some(capitalised(mistake.remedy));
+            answer.section = Section::find(mistake.section);
+        } else if let Some(mistake) = self.named().filter(|_| self.is_sure) {
+            answer.kind = AnswerKind::Mistake;
+            answer.title = capitalised(mistake.title);
+            answer.explanation = match self.alike.as_slice() {
+                [] => "With this mistake built into ours, the two differ by noise only".to_owned(),
+                [other, ..] => {
+                    answer.kind = AnswerKind::LikelyMistake;
+                    answer.title = format!("{}, or {}", answer.title, other.title);
+                    "Each of them gives this picture".to_owned()
+                }
             };
             answer.remedy = Some(capitalised(mistake.remedy));
             answer.section = Section::find(mistake.section);
-        } else if !self.is_right() {
+        } else if self.is_too_little() {
+            self.too_little(&mut answer);
+        } else if let Some(mistake) = self.named() {
+            answer.kind = AnswerKind::LikelyMistake;
+            answer.title = format!("A guess: {}", mistake.title);
+            answer.explanation =
+                "It comes nearest of the known mistakes, but does not explain everything".to_owned();
+            answer.remedy = Some(capitalised(mistake.remedy));
+            answer.section = Section::find(mistake.section);
+        } else if !self.is_sure {
             answer.kind = AnswerKind::Unknown;
             answer.title = "Something differs, and none of the known mistakes explains it".to_owned();
             answer.explanation = "It may be a picture of another section".to_owned();
-            let remedy = "Choose the section that your picture belongs to, and look where it differs; the final picture of \
-                          section 14.1 cannot be checked: its small spheres are at random places";
+            let remedy = "Choose the section that your picture belongs to, and look where it differs";
             answer.remedy = Some(remedy.to_owned());
         } else if !answer.damages.is_empty() {
             let damage = answer.damages.remove(0);
@@ -120,6 +144,29 @@ impl Finding {
         answer
     }
 
+    /// The answer if the noise does not allow a verdict.
+    fn too_little(&self, answer: &mut Answer) {
+        answer.kind = AnswerKind::CannotCheck;
+        let is_smoothed = self.grain.is_some_and(|grain| grain.is_smoothed);
+        (answer.title, answer.remedy) = if is_smoothed {
+            (
+                "This is not the file that a ray tracer writes: its noise has been smoothed".to_owned(),
+                Some("Check the PPM or PNG that your program writes: JPEG, scaling, blur and filters change it".to_owned()),
+            )
+        } else {
+            (
+                "It is too noisy to judge".to_owned(),
+                Some("Render it with at least 10 samples per pixel; 100 show small faults, too".to_owned()),
+            )
+        };
+        let likely = format!("It looks like section {}", self.stage.section);
+        answer.explanation = match self.named() {
+            _ if self.right.misfit < NEARLY_RIGHT => format!("{likely}, and no fault can be seen"),
+            Some(mistake) => format!("{likely}, perhaps with this mistake: {}", mistake.title),
+            None => format!("{likely}, but with differences that cannot be told from noise"),
+        };
+    }
+
     fn evidence(&self, mine: &Mine) -> Vec<String> {
         let percent = |share: f64| match 100.0 * share {
             percent if percent > 0.0 && percent < 1.0 => "less than 1 %".to_owned(),
@@ -130,7 +177,7 @@ impl Finding {
             evidence.push(capitalised(note));
         }
         if self.right.differing > 0.0 {
-            let [column, row] = self.right.worst;
+            let [column, row] = self.right.worst();
             evidence.push(format!(
                 "They differ in {} of the blocks of 8 x 8 pixels, most around column {column}, row {row}",
                 percent(self.right.differing)
@@ -147,9 +194,17 @@ impl Finding {
             )),
             _ => {}
         }
-        if let Some(alike) = self.alike {
+        for alike in &self.alike {
             let remedy = capitalised(alike.remedy);
             evidence.push(format!("Another mistake gives the same picture: {}. {remedy}", alike.title));
+        }
+        if !self.is_sure {
+            evidence.extend(measured(&self.right, mine));
+        }
+        if let Some(grain) =
+            self.grain.filter(|grain| !grain.is_smoothed && (1.0..5000.0).contains(&grain.samples))
+        {
+            evidence.push(format!("Its noise is that of about {:.0} samples per pixel", grain.samples));
         }
         let is_gradient = self.stage.setup.rules.shading == Shading::ImageGradient;
         if self.is_right() && mine.width == mine.height && !is_gradient {
@@ -158,6 +213,66 @@ impl Finding {
         }
         evidence
     }
+}
+
+/// Mean squared error of display values below which no fault can be seen.
+const NEARLY_RIGHT: f64 = 1.5e-4;
+
+/// What can be measured of a picture that no mistake explains: brightness, where it differs, and shifts.
+fn measured(right: &Compared, mine: &Mine) -> Vec<String> {
+    let seen = Seen::of(mine, &right.hypothesis.written, |_, _| 0.0);
+    let mut measured = Vec::new();
+    let gain = Hypothesis { fit: Some(Fit::Gain), ..right.hypothesis.clone() };
+    let brighter = compare(&seen, gain, right.rendered.clone());
+    if brighter.misfit < 0.8 * right.misfit {
+        measured.extend(brighter.hypothesis.note);
+    }
+    let [width, height] = [mine.width as usize, mine.height as usize];
+    let error = |[dx, dy]: [isize; 2]| {
+        let inside = |place: &usize| {
+            (2..width - 2).contains(&(place % width)) && (2..height - 2).contains(&(place / width))
+        };
+        let square = |place: usize| {
+            let from = place.wrapping_add_signed(dy * width as isize + dx);
+            let (seen, ours) = (seen.values[from], right.expected[place]);
+            (0..3)
+                .map(|channel| (seen[channel] - ours[channel]).powi(2))
+                .filter(|x| x.is_finite())
+                .sum::<f64>()
+        };
+        (0..width * height).filter(inside).map(square).sum::<f64>()
+    };
+    let shifts = (-2..=2).flat_map(|dy| (-2..=2).map(move |dx| [dx, dy]));
+    let errors: Vec<([isize; 2], f64)> = shifts.map(|shift| (shift, error(shift))).collect();
+    let here = error([0, 0]);
+    if let Some(([dx, dy], least)) = errors.into_iter().min_by(|(_, a), (_, b)| a.total_cmp(b))
+        && least < 0.7 * here
+    {
+        measured.push(format!("it fits better if it is moved by {} pixels to the left and {} up", dx, dy));
+    }
+    let tracer = Tracer::new(&right.hypothesis.recipe, Steps::OF_THE_BOOK, 1);
+    let spheres = tracer.spheres();
+    let name = |[x, y]: &[u32; 2]| match spheres[*y as usize * width + *x as usize] {
+        Some(sphere) => right.hypothesis.recipe.scene.materials[sphere.material].name.clone(),
+        None => "sky".to_owned(),
+    };
+    let mut counts: Vec<(String, usize)> = Vec::new();
+    if right.differing > 0.0 {
+        for name in right.places.iter().map(name) {
+            match counts.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, count)) => *count += 1,
+                None => counts.push((name, 1)),
+            }
+        }
+        counts.sort_by(|(_, a), (_, b)| b.cmp(a));
+        let all: usize = counts.iter().map(|(_, count)| count).sum();
+        let named = counts.iter().filter(|(_, count)| 50 * count >= all);
+        let names: Vec<String> = named
+            .map(|(name, count)| format!("{name} ({:.0} %)", 100.0 * *count as f64 / all as f64))
+            .collect();
+        measured.push(format!("blocks that differ show: {}", names.join(", ")));
+    }
+    measured.into_iter().map(|line| capitalised(&line)).collect()
 }
 
 fn capitalised(text: &str) -> String {
@@ -175,14 +290,14 @@ mod tests {
         for mistake in MISTAKES {
             let section = Section::find(mistake.section).unwrap();
             assert_eq!(section.number, mistake.section);
-            assert!(
-                section.stage.section <= mistake.section || section.stage.section.len() < 4,
-                "{section:?}"
-            );
+            let chapter =
+                |section: &str| section.split('.').next().map(|chapter| chapter.parse::<u32>().unwrap());
+            assert!(chapter(section.stage.section) <= chapter(mistake.section), "{section:?}");
         }
         let section = |number| Section::find(number).unwrap();
         let gamma = Stage::find("lambertian-gamma").unwrap();
         assert_eq!(section("9.5"), Section { number: "9.5", url: gamma.url(), stage: gamma });
+        assert_eq!(section("8.2").stage.id, "antialiased");
         assert!(section("3.1").url.ends_with("#thevec3class/colorutilityfunctions"));
     }
 }

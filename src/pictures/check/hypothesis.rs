@@ -1,11 +1,10 @@
-//! Hypotheses: the right picture, the picture each mistake would give, and how close the reader's comes to them.
+//! Hypotheses: the right picture and the picture that each mistake would give, rendered and compared with the reader's.
 
-use super::Mine;
 use super::tracer::{Steps, Tracer};
-use crate::job::output::Encoding;
+use super::written::{Seen, Written, reduced};
 use crate::job::recipe::Recipe;
 use crate::job::render::{RenderSettings, Renderer, SamplerKind};
-use crate::numbers::statistics::blocks::{BlockTest, Differences, Noise};
+use crate::numbers::statistics::blocks::{Block, BlockTest, Differences, Noise};
 use crate::render_cpu::{CpuOptions, CpuRenderer};
 use anyhow::Result;
 use std::ops::Range;
@@ -18,7 +17,7 @@ const EXCESS_LIMIT: f64 = 10.0;
 /// Factor by which a block of a right picture may exceed the limit for normal noise.
 const LARGEST_FACTOR: f64 = 1.6;
 
-/// A common mistake in programs that follow the book.
+/// A common mistake in programs that follow the book, or another way to be right.
 #[derive(Debug)]
 pub struct Mistake {
     pub id: &'static str,
@@ -26,25 +25,12 @@ pub struct Mistake {
     pub section: &'static str,
     pub title: &'static str,
     pub remedy: &'static str,
-    /// Whether the mistake can show in a picture of this recipe.
+    /// Whether it can show in a picture of this recipe.
     pub applies: fn(&Recipe) -> bool,
-    pub shows: Shows,
+    /// The sections in which the book itself has it, so that the picture is right; `"*"` for all.
+    pub right_in: &'static [&'static str],
     /// Each makes one variant of the mistake out of the right picture.
     pub changes: &'static [fn(&mut Hypothesis)],
-}
-
-/// Where a mistake shows.
-#[derive(Debug)]
-pub enum Shows {
-    /// In the means of blocks.
-    InBlocks,
-    /// At edges, pixel by pixel; block means hardly show it.
-    AtEdges,
-    /// In the bytes, even where blocks differ only by noise.
-    InBytes(fn(&Mine, &Compared) -> bool),
-    /// If nothing else explains the picture, in the difference from the right one, with a picture of one sample a pixel.
-    /// Other random numbers give another picture, so it is not compared with one.
-    InNoise(fn(&Mine, &Compared, &[[f64; 3]]) -> bool),
 }
 
 impl Mistake {
@@ -54,18 +40,17 @@ impl Mistake {
         let picture = |change: &fn(&mut Hypothesis)| {
             let mut picture = Hypothesis { mistake: Some(self), ..right.clone() };
             change(&mut picture);
-            (picture.written != right.written || !picture.is_right_before_writing(recipe)).then_some(picture)
+            let is_changed = picture.written != right.written
+                || picture.fit.is_some()
+                || !picture.is_right_before_writing(recipe);
+            is_changed.then_some(picture)
         };
         self.changes.iter().filter_map(picture).collect()
     }
 
-    /// Whether it is a step of a later section rather than a fault.
-    pub fn is_early(&self) -> bool {
-        self.id.ends_with("-early")
-    }
-
-    pub fn is_at_edges(&self) -> bool {
-        matches!(self.shows, Shows::AtEdges)
+    /// Whether a picture of this section with it is right.
+    pub fn is_right_in(&self, section: &str) -> bool {
+        self.right_in.iter().any(|right| matches!(*right, "*") || *right == section)
     }
 }
 
@@ -79,29 +64,33 @@ pub struct Hypothesis {
     pub recipe: Recipe,
     /// The steps of the plain tracer; without, the program's own tracer renders the recipe.
     pub steps: Option<Steps>,
+    /// A number of the mistake that only the reader's picture tells.
+    pub fit: Option<Fit>,
+    /// Whether only pixels at edges show it.
+    pub is_fine: bool,
     pub written: Written,
 }
 
+/// A picture that is added to the right one, as often as fits best.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Written {
-    pub is_flipped: bool,
-    pub is_mirrored: bool,
-    /// Source channels of the written red, green and blue.
-    pub channels: [usize; 3],
-    /// The curve from linear to displayed values.
-    pub curve: Encoding,
-    /// Factor from displayed values to bytes.
-    pub levels: f64,
-    /// Whether 256 becomes 0 instead of 255.
-    pub wraps: bool,
+pub enum Fit {
+    /// The right picture itself: a factor of brightness.
+    Gain,
+    /// The right picture, one pixel to the right, as if a pixel began with the mean of the one before.
+    Carry,
 }
 
 impl Hypothesis {
     pub fn right(recipe: &Recipe) -> Hypothesis {
-        let curve = Encoding::Book(recipe.rules.transfer);
-        let (is_flipped, is_mirrored, wraps) = (false, false, false);
-        let written = Written { is_flipped, is_mirrored, channels: [0, 1, 2], curve, levels: 256.0, wraps };
-        Hypothesis { mistake: None, note: None, recipe: recipe.clone(), steps: None, written }
+        Hypothesis {
+            mistake: None,
+            note: None,
+            recipe: recipe.clone(),
+            steps: None,
+            fit: None,
+            is_fine: false,
+            written: Written::right(recipe),
+        }
     }
 
     /// The steps of the plain tracer, which is then the one to render the picture.
@@ -113,56 +102,48 @@ impl Hypothesis {
     pub fn is_right_before_writing(&self, recipe: &Recipe) -> bool {
         self.steps.is_none() && self.recipe == *recipe
     }
+
+    pub fn size(&self) -> [u32; 2] {
+        [self.recipe.settings.width, self.recipe.settings.height]
+    }
 }
 
-impl Written {
-    /// The linear value of a byte in a row, and half of its step.
-    pub fn linear(&self, byte: u8, row: usize, height: usize) -> [f64; 2] {
-        let linear = |part: f64| self.curve.linear((f64::from(byte) + part) / self.levels, row, height);
-        [linear(0.5), (linear(1.0) - linear(0.0)) / 2.0]
+/// A rendered picture: linear RGB, row by row from the top, as two halves with independent noise.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    pub halves: [Vec<[f64; 3]>; 2],
+    /// Per pixel.
+    pub samples: u64,
+}
+
+impl Rendered {
+    pub fn mean(&self) -> Vec<[f64; 3]> {
+        let [a, b] = &self.halves;
+        a.iter().zip(b).map(|(a, b)| [0, 1, 2].map(|channel| 0.5 * (a[channel] + b[channel]))).collect()
     }
 
-    /// The linear value that a reader sees if the displayed value was multiplied by 255 instead of 256.
-    pub fn times_255(&self, linear: f64, row: usize, height: usize) -> f64 {
-        self.curve.linear(self.curve.displayed(linear, row, height) * 255.0 / 256.0, row, height)
+    pub fn map(&self, change: impl Fn(&[[f64; 3]]) -> Vec<[f64; 3]>) -> Rendered {
+        Rendered { halves: self.halves.each_ref().map(|half| change(half)), samples: self.samples }
     }
 
-    pub fn byte_of(&self, linear: f64, row: usize, height: usize) -> u8 {
-        let displayed = self.curve.displayed(linear.max(0.0), row, height);
-        (self.levels * displayed.min(0.999)) as u8
+    /// The mean of each square of `factor` x `factor` pixels.
+    pub fn reduced(&self, width: usize, factor: usize) -> Rendered {
+        self.map(|half| reduced(half, width, factor))
     }
 
-    /// The byte that the reader's program had before it wrapped, as far as ours tells.
-    pub fn unwrapped(&self, byte: u8, expected: f64) -> u8 {
-        if self.wraps && byte == 0 && expected > 0.5 { 255 } else { byte }
-    }
-
-    /// Bytes in the layout of the file, row by row.
-    pub fn bytes_of(&self, linear: &[[f64; 3]], [width, height]: [u32; 2]) -> Vec<[u8; 3]> {
-        let byte = |index: usize, x: f64| self.byte_of(x, index / width as usize, height as usize);
-        linear.iter().enumerate().map(|(index, pixel)| pixel.map(|x| byte(index, x))).collect()
-    }
-
-    /// Rearranges the linear picture to the layout of the file.
-    pub fn laid_out(&self, linear: &[[f64; 3]], width: usize) -> Vec<[f64; 3]> {
-        let height = linear.len() / width;
-        (0..linear.len())
-            .map(|index| {
-                let (x, y) = (index % width, index / width);
-                let x = if self.is_mirrored { width - 1 - x } else { x };
-                let y = if self.is_flipped { height - 1 - y } else { y };
-                let pixel = linear[y * width + x];
-                self.channels.map(|channel| pixel[channel])
-            })
-            .collect()
+    /// This picture with the change from one to another, which share random numbers, so that most noise cancels.
+    pub fn changed(&self, from: &Rendered, to: &Rendered) -> Rendered {
+        let half = |half: usize| {
+            let pixels = self.halves[half].iter().zip(&from.halves[half]).zip(&to.halves[half]);
+            pixels.map(|((own, from), to)| [0, 1, 2].map(|c| own[c] + to[c] - from[c])).collect()
+        };
+        Rendered { halves: [half(0), half(1)], samples: self.samples }
     }
 }
 
 pub struct Studio {
     recipe: Recipe,
     fast: CpuRenderer,
-    /// The right picture and its sample count.
-    right: Option<(u64, Vec<[f64; 3]>)>,
 }
 
 /// The size of the book's pictures: 400 x 225.
@@ -178,36 +159,54 @@ impl Studio {
             ..recipe.settings
         };
         let recipe = Recipe { settings, ..recipe };
-        Ok(Studio { recipe, fast: CpuRenderer::new(CpuOptions::default())?, right: None })
+        Ok(Studio { recipe, fast: CpuRenderer::new(CpuOptions::default())? })
     }
 
     pub fn recipe(&self) -> &Recipe {
         &self.recipe
     }
 
-    /// Renders a hypothesis: linear RGB in the layout of the file. Pictures larger than [`PIXELS`] get the same number
-    /// of paths, and the plain tracer gets fewer.
+    /// Renders a hypothesis: linear RGB in the layout of the file.
     pub fn render(&mut self, hypothesis: &Hypothesis, samples: u64) -> Result<Vec<[f64; 3]>> {
-        let RenderSettings { width, height, .. } = self.recipe.settings;
-        let is_exact = !self.recipe.rules.antialiasing && self.recipe.samples_per_pixel == 1;
-        let count = |samples: u64| match is_exact {
-            true => 1,
-            false => (samples * PIXELS / (u64::from(width) * u64::from(height))).clamp(1, samples),
-        };
-        let linear = match hypothesis.steps {
+        let linear = self.halves(hypothesis, 1, samples, None)?.mean();
+        Ok(hypothesis.written.laid_out(&linear, hypothesis.size()))
+    }
+
+    /// Renders a hypothesis, smaller by a factor. Pictures larger than [`PIXELS`] get the same number of paths, and the
+    /// plain tracer gets fewer; it leaves out the pixels that `mask` leaves out.
+    pub fn halves(
+        &mut self,
+        hypothesis: &Hypothesis,
+        factor: u32,
+        samples: u64,
+        mask: Option<&[bool]>,
+    ) -> Result<Rendered> {
+        let [width, height] = hypothesis.size().map(|side| (side / factor).max(1));
+        let mut recipe = hypothesis.recipe.clone();
+        (recipe.settings.width, recipe.settings.height) = (width, height);
+        let is_exact = !recipe.rules.antialiasing && recipe.samples_per_pixel == 1;
+        let limit = samples * PIXELS / (u64::from(width) * u64::from(height));
+        let mut samples = if is_exact { 1 } else { limit.clamp(2, samples.max(2)) };
+        let half = match hypothesis.steps {
             Some(steps) => {
-                Tracer::new(&hypothesis.recipe, steps).means(count((samples / 8).clamp(1, 16)) as u32)
+                let tracer = Tracer::new(&recipe, steps, factor);
+                samples = 2 * (samples / 16).clamp(1, 8);
+                let half = |half: u32| tracer.means((samples / 2) as u32, half, mask);
+                [half(0), if is_exact { Vec::new() } else { half(1) }]
             }
-            None if hypothesis.is_right_before_writing(&self.recipe) => {
-                let count = count(samples);
-                if self.right.as_ref().is_none_or(|(samples, _)| *samples < count) {
-                    self.right = Some((count, means(&mut self.fast, &self.recipe, count)?));
-                }
-                self.right.as_ref().map_or_else(Vec::new, |(_, linear)| linear.clone())
+            None => {
+                let mut half = |seed: u32| {
+                    recipe.settings.seed = hypothesis.recipe.settings.seed.wrapping_add(seed);
+                    means(&mut self.fast, &recipe, samples.div_ceil(2))
+                };
+                [half(0)?, if is_exact { Vec::new() } else { half(1)? }]
             }
-            None => means(&mut self.fast, &hypothesis.recipe, count(samples))?,
         };
-        Ok(hypothesis.written.laid_out(&linear, width as usize))
+        let halves = match half {
+            [half, _] if is_exact => [half.clone(), half],
+            halves => halves,
+        };
+        Ok(Rendered { halves, samples })
     }
 }
 
@@ -224,75 +223,253 @@ pub struct Compared {
     pub hypothesis: Hypothesis,
     /// Mean squared error beyond noise over blocks, in display values.
     pub misfit: f64,
-    /// Whether the remaining difference is noise.
+    /// Whether the blocks differ only by noise.
     pub is_noise: bool,
     /// Share of the blocks that differ by more than noise.
     pub differing: f64,
-    /// Column and row of the middle of the block that differs most.
-    pub worst: [u32; 2],
+    /// The middle of each block that differs by more than noise, the worst first: column and row.
+    pub places: Vec<[u32; 2]>,
+    /// The picture of the hypothesis, with what was fitted, and what it predicts in the values that [`Seen`] has.
+    pub rendered: Rendered,
     pub expected: Vec<[f64; 3]>,
 }
 
 impl Compared {
-    /// The same, if a mistake explains the difference.
-    pub fn blamed_on(&self, mistake: &'static Mistake) -> Compared {
-        let mut found = Compared { is_noise: true, ..self.clone() };
-        found.hypothesis.mistake = Some(mistake);
-        found
+    /// Column and row of the middle of the block that differs most.
+    pub fn worst(&self) -> [u32; 2] {
+        self.places.first().copied().unwrap_or_default()
     }
 }
 
-pub fn compare(mine: &Mine, hypothesis: Hypothesis, expected: Vec<[f64; 3]>) -> Compared {
-    let (width, height) = (mine.width as usize, mine.height as usize);
-    let step = mine.step();
-    let linear = |byte: u8, index: usize| hypothesis.written.linear(byte, index / width, height);
-    let pixels = mine.bytes.iter().zip(&expected).enumerate();
-    let (values, steps): (Vec<[f64; 3]>, Vec<[f64; 3]>) = pixels
-        .map(|(index, (bytes, expected))| {
-            let [least, most] = [0, 255].map(|byte| linear(byte, index)[0]);
-            let unwrapped = |channel: usize| hypothesis.written.unwrapped(bytes[channel], expected[channel]);
-            let mine_linear = [0, 1, 2].map(|channel| linear(unwrapped(channel), index));
-            let value =
-                [0, 1, 2].map(|channel| mine_linear[channel][0] - expected[channel].clamp(least, most));
-            (value, mine_linear.map(|[_, half]| half * step))
-        })
-        .unzip();
+/// The hypothesis with what was fitted, and the mean squared error of its picture, in display values.
+pub fn rough(seen: &Seen, mut hypothesis: Hypothesis, rendered: Rendered) -> (Hypothesis, Rendered, f64) {
+    let rendered = fitted(seen, &mut hypothesis, rendered);
+    let expected = hypothesis.written.predicted(seen, &rendered.mean());
+    let (mut sum, mut count) = (0.0, 1e-9);
+    let halves = rendered.halves.each_ref().map(|half| half.as_flattened());
+    for (index, (seen, expected)) in
+        seen.values.as_flattened().iter().zip(expected.as_flattened()).enumerate()
+    {
+        // The noise of the render is no error.
+        let noise = 0.25 * (halves[0][index] - halves[1][index]).powi(2);
+        let square = ((seen - expected).powi(2) - noise) / (4.0 * expected.max(0.02));
+        if square.is_finite() {
+            sum += square;
+            count += 1.0;
+        }
+    }
+    let is_known = 4.0 * count > (3 * seen.values.len()) as f64;
+    (hypothesis, rendered, if is_known { sum / count } else { f64::INFINITY })
+}
+
+/// The blocks of a picture of this size, without means.
+pub fn blocks_of(width: u32, pixels: usize) -> Vec<Block> {
+    let (values, noise) = (vec![[0.0; 3]; pixels], Noise::Spread);
+    BlockTest::of(&Differences { width, values: &values, noise, steps: None, tolerance: 0.0, rare: 0.0 })
+        .blocks
+}
+
+/// Compares what is seen of the reader's picture with a hypothesis and its rendered picture.
+pub fn compare(seen: &Seen, mut hypothesis: Hypothesis, rendered: Rendered) -> Compared {
+    let width = seen.size[0] as usize;
+    let rendered = fitted(seen, &mut hypothesis, rendered);
+    let expected = hypothesis.written.predicted(seen, &rendered.mean());
+    let values: Vec<[f64; 3]> = seen
+        .values
+        .iter()
+        .zip(&expected)
+        .map(|(seen, expected)| [0, 1, 2].map(|channel| seen[channel] - expected[channel]))
+        .collect();
     let test = BlockTest::of(&Differences {
-        width: mine.width,
+        width: seen.size[0],
         values: &values,
         noise: Noise::Spread,
-        steps: Some(&steps),
+        steps: Some(&seen.half_steps),
         tolerance: 1e-4,
         rare: 0.0,
     });
     let limit = LARGEST_FACTOR * test.largest_limit;
-    let is_noise = test.largest_excess() <= EXCESS_LIMIT && test.largest <= limit;
-    let differing = test.blocks.iter().filter(|block| block.largest() > limit).count() as f64;
+    let is_known = 4 * test.counts.iter().sum::<usize>() > 3 * test.blocks.len();
+    let is_noise = is_known && test.largest_excess() <= EXCESS_LIMIT && test.largest <= limit;
     let middle = |range: &Range<u32>| u32::midpoint(range.start, range.end);
+    let beyond = test.blocks.iter().filter(|block| block.largest() > limit).count();
+    let places = test.worst(beyond.max(1)).into_iter().map(|block| [middle(&block.x), middle(&block.y)]);
     Compared {
         misfit: misfit(&test, &values, &expected, width),
         is_noise,
-        differing: differing / test.blocks.len().max(1) as f64,
-        worst: test.worst(1).first().map_or([0; 2], |block| [middle(&block.x), middle(&block.y)]),
+        differing: beyond as f64 / test.blocks.len().max(1) as f64,
+        places: places.collect(),
         hypothesis,
+        rendered,
         expected,
     }
 }
 
-/// Mean squared error beyond noise over blocks and channels, in display values.
-fn misfit(test: &BlockTest, values: &[[f64; 3]], expected: &[[f64; 3]], width: usize) -> f64 {
-    let mut sum = 0.0;
-    for block in &test.blocks {
-        let pixels =
-            || block.y.clone().flat_map(|y| block.x.clone().map(move |x| y as usize * width + x as usize));
-        let count = pixels().count() as f64;
-        for (channel, mean) in block.means.into_iter().enumerate() {
-            let bright = pixels().map(|pixel| expected[pixel][channel]).sum::<f64>() / count;
-            let spread: f64 = pixels().map(|pixel| (values[pixel][channel] - mean).powi(2)).sum();
-            let noise = spread / (count * (count - 1.0).max(1.0));
-            // The derivative of the square root converts linear errors to displayed ones.
-            sum += (mean * mean - noise) / (4.0 * bright.max(0.02));
+/// Less brightness than this is not a mistake.
+const LEAST_FIT: f64 = 0.009;
+
+/// The rendered picture with what the hypothesis adds to it.
+fn fitted(seen: &Seen, hypothesis: &mut Hypothesis, rendered: Rendered) -> Rendered {
+    let Some(fit) = hypothesis.fit else { return rendered };
+    let from = |index: usize| match fit {
+        Fit::Gain => index,
+        Fit::Carry => index.saturating_sub(1),
+    };
+    let right = rendered.mean();
+    let (mut product, mut square) = (0.0, 1e-9);
+    for (index, (seen, expected)) in seen.values.iter().zip(&right).enumerate() {
+        for channel in 0..3 {
+            let (direction, value) = (right[from(index)][channel], seen[channel]);
+            // A value at the top of its range is only a lower bound.
+            if value.is_finite() && value < 0.98 {
+                let weight = 1.0 / (0.01 + expected[channel]);
+                product += weight * direction * (value - expected[channel]);
+                square += weight * direction * direction;
+            }
         }
     }
-    sum / (3 * test.blocks.len().max(1)) as f64
+    let times = product / square;
+    if times.abs() < LEAST_FIT {
+        return rendered;
+    }
+    hypothesis.note = Some(match fit {
+        Fit::Gain => format!("your picture is {:.3} times as bright as ours, in linear values", 1.0 + times),
+        Fit::Carry => format!("each pixel holds about 1/{:.0} of the one before", 1.0 / times),
+    });
+    rendered.map(|half| {
+        let add = |index: usize| [0, 1, 2].map(|c| half[index][c] + times * half[from(index)][c]);
+        (0..half.len()).map(add).collect()
+    })
+}
+
+/// Mean squared error beyond noise over blocks and channels, in display values.
+fn misfit(test: &BlockTest, values: &[[f64; 3]], expected: &[[f64; 3]], width: usize) -> f64 {
+    let (mut sum, mut count) = (0.0, 0_usize);
+    for block in &test.blocks {
+        for (channel, mean) in block.means.into_iter().enumerate().filter(|(c, _)| block.is_known(*c)) {
+            let pixels = || pixels_of(block, width);
+            let number = pixels().count() as f64;
+            let bright = pixels().map(|pixel| expected[pixel][channel]).sum::<f64>() / number;
+            let spread: f64 = pixels().map(|pixel| (values[pixel][channel] - mean).powi(2)).sum();
+            let noise = spread / (number * (number - 1.0).max(1.0));
+            // The derivative of the square root converts linear errors to displayed ones.
+            sum += (mean * mean - noise) / (4.0 * bright.max(0.02));
+            count += 1;
+        }
+    }
+    // Of a picture of which nothing is known, nothing is explained.
+    if count == 0 { f64::INFINITY } else { sum / count as f64 }
+}
+
+/// Indices of a block's pixels.
+pub fn pixels_of(block: &Block, width: usize) -> impl Iterator<Item = usize> + Clone + use<> {
+    let (x, y) = (block.x.clone(), block.y.clone());
+    y.flat_map(move |y| x.clone().map(move |x| y as usize * width + x as usize))
+}
+
+/// How far a direction leads from a hypothesis towards the reader's picture: 0 if the hypothesis is right, and 1 if the
+/// picture at the end of the direction is.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Slope {
+    pub at: f64,
+    /// The same in deviations, from the blocks' own scatter.
+    pub deviations: f64,
+}
+
+impl Slope {
+    /// Whether the direction leads at least as far, as clearly.
+    pub fn is_beyond(&self, limit: Slope) -> bool {
+        self.at > limit.at && self.deviations > limit.deviations
+    }
+}
+
+/// What a hypothesis leaves of the reader's picture, to be regressed on directions, pixel by pixel. Noise of the renders
+/// does not bias it: each product is of different halves.
+pub struct Rest<'a> {
+    seen: &'a Seen,
+    from: &'a Rendered,
+    blocks: Vec<Block>,
+    /// Of each block and channel; 0 if the channel is not known.
+    weights: Vec<[f64; 3]>,
+}
+
+impl<'a> Rest<'a> {
+    pub fn new(seen: &'a Seen, from: &'a Rendered) -> Self {
+        let width = seen.size[0] as usize;
+        let blocks = blocks_of(seen.size[0], seen.values.len());
+        let mean = from.mean();
+        let weight = |block: &Block, channel: usize| {
+            let (mut sum, mut square, mut step, mut count) = (0.0, 0.0, 0.0, 0.0);
+            for pixel in pixels_of(block, width) {
+                let rest = seen.values[pixel][channel] - mean[pixel][channel];
+                sum += rest;
+                square += rest * rest;
+                step += seen.half_steps[pixel][channel];
+                count += 1.0;
+            }
+            let (mean, step) = (sum / count, step / count);
+            let weight = 1.0 / ((square / count - mean * mean).max(0.0) + step * step + 1e-6);
+            if sum.is_finite() && weight.is_finite() { weight } else { 0.0 }
+        };
+        let weights = blocks.iter().map(|block| [0, 1, 2].map(|channel| weight(block, channel))).collect();
+        Rest { seen, from, blocks, weights }
+    }
+
+    /// How far it leads in the direction of another picture, in the whole picture and in each ninth of it. With
+    /// `is_local`, the means of the blocks are left out, so that only details count.
+    pub fn slopes(&self, to: &Rendered, is_local: bool) -> [Slope; 10] {
+        let width = self.seen.size[0] as usize;
+        let (mut products, mut squares, mut scatters) = ([0.0; 10], [0.0; 10], [0.0; 10]);
+        for (block, weights) in self.blocks.iter().zip(&self.weights) {
+            let (mut product, mut square) = (0.0, 0.0);
+            for channel in (0..3).filter(|channel| weights[*channel] > 0.0) {
+                // The sums of both halves' rests and directions, of their products, and of the directions' product.
+                let mut sums = [0.0; 7];
+                for pixel in pixels_of(block, width) {
+                    let value = self.seen.values[pixel][channel];
+                    let [a, b] = self.from.halves.each_ref().map(|half| half[pixel][channel]);
+                    let [c, d] = to.halves.each_ref().map(|half| half[pixel][channel]);
+                    // A value at an end of its range is only a bound.
+                    if value > 0.985 || a.max(b) > 0.97 || a.min(b) < self.seen.half_steps[pixel][channel] {
+                        continue;
+                    }
+                    let (rests, directions) = ([value - a, value - b], [c - a, d - b]);
+                    let products = rests[0] * directions[1] + rests[1] * directions[0];
+                    let of = [
+                        1.0,
+                        rests[0],
+                        rests[1],
+                        directions[0],
+                        directions[1],
+                        products,
+                        directions[0] * directions[1],
+                    ];
+                    (0..7).for_each(|index| sums[index] += of[index]);
+                }
+                let [count, rest_a, rest_b, direction_a, direction_b, mut products, mut directions] = sums;
+                if is_local && count > 0.0 {
+                    products -= (rest_a * direction_b + rest_b * direction_a) / count;
+                    directions -= direction_a * direction_b / count;
+                }
+                product += 0.5 * weights[channel] * products;
+                square += weights[channel] * directions;
+            }
+            let [width, height] = self.seen.size;
+            let ninth = |at: u32, side: u32| (3 * at / side.max(1)) as usize;
+            for index in [0, 1 + ninth(block.x.start, width) + 3 * ninth(block.y.start, height)] {
+                products[index] += product;
+                squares[index] += square;
+                scatters[index] += product * product;
+            }
+        }
+        std::array::from_fn(|index| {
+            if squares[index] <= 0.0 || scatters[index] == 0.0 {
+                return Slope::default();
+            }
+            Slope {
+                at: products[index] / squares[index],
+                deviations: products[index] / scatters[index].sqrt(),
+            }
+        })
+    }
 }

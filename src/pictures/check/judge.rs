@@ -1,81 +1,117 @@
-//! Decides which stage a picture shows, and whether it is right or which mistake explains it best.
+//! Decides which stage a picture shows, and whether it is right or which mistake explains it.
 
 use super::Mine;
-use super::hypothesis::{Compared, Hypothesis, Mistake, Shows, Studio, compare};
-use super::mistakes::{MISTAKES, applying_to};
+use super::hypothesis::{Compared, Hypothesis, Mistake, Rendered, Rest, Slope, Studio, compare, rough};
+use super::mistakes::applying_to;
+use super::noise::{Grain, grain, is_shared};
+use super::written::{Seen, Written};
 use crate::job::recipe::Recipe;
 use crate::stages::Stage;
 use anyhow::{Context, Result, bail};
 
-/// Samples per pixel of the right picture.
-const FINE: u64 = 256;
+/// Samples per pixel of the right picture, and of the other candidates.
+const FINE: [u64; 2] = [256, 128];
 
-/// Samples per pixel of the first comparison with each mistake, and of the final candidates.
-const COARSE: [u64; 2] = [16, 128];
+/// Samples per pixel of the first, small pictures, and their width.
+const SMALL: u64 = 64;
+const SMALL_WIDTH: u32 = 80;
 
 /// Samples per pixel when the stage is unknown.
-const SMALL: u64 = 32;
+const TINY: u64 = 16;
 
-/// Mistakes rendered again with more samples.
-const REFINED: usize = 4;
+/// Mistakes rendered in full size.
+const REFINED: usize = 6;
 
 /// None are if the first comparison leaves more than this share of the squared error.
 const HOPELESS: f64 = 0.7;
 
-/// A mistake explains a picture if it leaves less than this share of the right picture's squared error.
+/// A guess is worth its name if it leaves less than this share of the right picture's squared error.
 const EXPLAINED: f64 = 0.3;
+
+/// A hypothesis is wrong if a direction leads so far from it towards the reader's picture, in so many deviations.
+const LEADS: Slope = Slope { at: 0.4, deviations: 5.0 };
+
+/// The same for one that leads nearly all the way.
+const LEADS_FAR: Slope = Slope { at: 0.6, deviations: 4.0 };
+
+/// The same for a mistake that is worth a picture in full size.
+const LEADS_ROUGHLY: Slope = Slope { at: 0.15, deviations: 3.0 };
+
+/// The same for directions between pictures that differ only in how they are written, because rounding leads halfway.
+const LEADS_IN_BYTES: f64 = 0.6;
+
+/// The same for shifts, in pixels, and for blur, in squares of pixels.
+const SHIFTED: f64 = 0.2;
+const BLURRED: f64 = 0.15;
+
+/// Mistakes whose pictures leave so much more than the best one are not alike, in display values squared.
+const ALIKE: f64 = 5e-6;
+
+/// Smoothed noise is only told from other differences if no more than this is left, in display values squared.
+const NEARLY: f64 = 3e-4;
+
+/// Fewer samples per pixel than this are too few to tell noise from a fault.
+const SAMPLES_LEAST: f64 = 8.0;
 
 /// Stages judged when the stage is unknown.
 const CANDIDATES: usize = 3;
 
-/// Width of the thumbnails compared with all stages, pixels.
-const SMALL_WIDTH: u32 = 64;
-
 /// Root mean square difference below which a stage counts as recognised, display values.
 const FOUND: f64 = 0.03;
 
-/// Least difference between a pixel's neighbours at an edge, linear radiance.
-const EDGE: f64 = 0.1;
+/// Stages that differ by so much more than the nearest one are not judged.
+const NEAR: f64 = 0.006;
 
-/// A mistake must leave less than this share of the squared error at edges.
-const BETTER: f64 = 0.8;
+/// Least difference between a pixel's neighbours at an edge, linear radiance.
+const EDGE: f64 = 0.02;
+
+/// Difference between small pictures where a mistake changes something, linear radiance.
+const CHANGED: f64 = 0.0015;
 
 #[derive(Clone, Debug)]
 pub struct Finding {
     pub stage: &'static Stage,
     pub right: Compared,
-    /// The likeliest mistake; `None` if the picture is right.
+    /// The mistake, or the other way to be right; `None` if the picture is right, or nothing explains it.
     pub mistake: Option<Compared>,
-    /// Another mistake that gives the same picture.
-    pub alike: Option<&'static Mistake>,
+    /// Whether the right picture, or the one with the mistake, leaves nothing but noise.
+    pub is_sure: bool,
+    /// Other mistakes that explain the picture as well.
+    pub alike: Vec<&'static Mistake>,
+    pub grain: Option<Grain>,
 }
 
 impl Finding {
-    /// Whether the picture differs only by noise.
+    /// Whether the picture differs from the book's only by noise.
     pub fn is_right(&self) -> bool {
-        self.mistake.is_none() && self.right.is_noise
+        self.mistake.is_none() && self.is_sure
     }
 
     pub fn named(&self) -> Option<&'static Mistake> {
         self.mistake.as_ref()?.hypothesis.mistake
     }
 
+    /// Whether the picture is right for its section, though it is not ours.
+    pub fn is_other_right(&self) -> bool {
+        self.is_sure && self.named().is_some_and(|mistake| mistake.is_right_in(self.stage.section))
+    }
+
+    /// Whether the reader's noise is too strong, or too smooth, for a verdict.
+    pub fn is_too_little(&self) -> bool {
+        let grain = |grain: &Grain| grain.is_smoothed || grain.samples < SAMPLES_LEAST;
+        !self.is_sure && self.grain.as_ref().is_some_and(grain)
+    }
+
     /// Ranks findings of different stages: lower is closer.
     fn rank(&self) -> (u8, f64) {
         let found = self.mistake.as_ref().unwrap_or(&self.right);
-        let class = match found.is_noise {
+        let class = match self.is_sure {
             true if self.mistake.is_none() => 0,
-            true if self.explains_all() => 1,
+            true if self.is_other_right() => 1,
             true => 2,
             false => 3,
         };
         (class, found.misfit)
-    }
-
-    /// Whether a mistake, rather than a step of a later section, explains all differences.
-    fn explains_all(&self) -> bool {
-        self.mistake.as_ref().is_some_and(|found| found.is_noise)
-            && self.named().is_some_and(|mistake| !mistake.is_early())
     }
 }
 
@@ -105,13 +141,32 @@ pub fn judge(mine: &Mine, stage: Option<&'static Stage>, mut say: impl FnMut(Str
         keep_closer(&mut best, finding);
     }
     for trial in trials {
-        if best.as_ref().is_some_and(Finding::explains_all) {
+        if best.as_ref().is_some_and(|best: &Finding| best.is_sure && best.is_other_right()) {
             break;
         }
         say(format!("trying the mistakes of {}", trial.stage.id));
         keep_closer(&mut best, trial.finding()?);
     }
     best.context("there is no stage to compare with")
+}
+
+/// As [`judge`], and tries first what was found last.
+pub fn judge_again(
+    mine: &Mine,
+    stage: Option<&'static Stage>,
+    last: Option<&Finding>,
+    say: impl FnMut(String),
+) -> Result<Finding> {
+    if let Some(last) = last.filter(|last| last.is_sure && last.named().is_some()) {
+        let trial = Trial::new(mine, last.stage)?;
+        let again = trial.finding_of(|known| {
+            known.is_some_and(|known| last.named().is_some_and(|named| named.id == known.id))
+        })?;
+        if again.is_sure && again.named().is_some() {
+            return Ok(Finding { alike: last.alike.clone(), ..again });
+        }
+    }
+    judge(mine, stage, say)
 }
 
 fn keep_closer(best: &mut Option<Finding>, finding: Finding) {
@@ -125,171 +180,408 @@ struct Trial<'a> {
     mine: &'a Mine,
     stage: &'static Stage,
     studio: Studio,
+    seen: Seen,
     right: Compared,
+}
+
+/// A hypothesis that may explain the picture, and the picture as it then is.
+struct Candidate {
+    found: Compared,
+    seen: Seen,
 }
 
 impl<'a> Trial<'a> {
     fn new(mine: &'a Mine, stage: &'static Stage) -> Result<Self> {
         let mut studio = Studio::new(stage.recipe(), [mine.width, mine.height])?;
         let hypothesis = Hypothesis::right(studio.recipe());
-        let expected = studio.render(&hypothesis, FINE)?;
-        let right = compare(mine, hypothesis, expected);
-        Ok(Trial { mine, stage, studio, right })
+        let rendered = studio.halves(&hypothesis, 1, FINE[0], None)?;
+        let seen = Seen::of(mine, &hypothesis.written, |_, _| 0.0);
+        let right = compare(&seen, hypothesis, rendered);
+        Ok(Trial { mine, stage, studio, seen, right })
     }
 
-    fn finding(mut self) -> Result<Finding> {
-        let (mut mistake, mut alike) = (None, None);
-        if self.right.is_noise {
-            mistake = self.at_edges()?;
+    fn seen(&self, written: &Written) -> Seen {
+        if *written == self.right.hypothesis.written {
+            return self.seen.clone();
         }
-        if mistake.is_none() {
-            mistake = self.in_bytes();
-        }
-        if mistake.is_none() && !self.right.is_noise {
-            (mistake, alike) = self.in_blocks()?;
-            if mistake.is_none() {
-                mistake = self.in_noise()?;
+        Seen::of(self.mine, written, |pixel, channel| self.right.expected[pixel][channel])
+    }
+
+    fn finding(self) -> Result<Finding> {
+        self.finding_of(|_| true)
+    }
+
+    /// The finding among the right picture and the mistakes that are wanted.
+    fn finding_of(mut self, is_wanted: impl Fn(Option<&Mistake>) -> bool) -> Result<Finding> {
+        let mut candidates = vec![Candidate { found: self.right.clone(), seen: self.seen.clone() }];
+        for (hypothesis, mask) in self.screened(is_wanted)? {
+            let rendered = match hypothesis.is_right_before_writing(self.studio.recipe()) {
+                true => self.right.rendered.clone(),
+                false => self.studio.halves(&hypothesis, 1, FINE[1], mask.as_deref())?,
+            };
+            let halves = [0, 1].map(|half| self.filled(&rendered.halves[half], half));
+            let rendered = Rendered { halves, ..rendered };
+            let seen = self.seen(&hypothesis.written);
+            let found = compare(&seen, hypothesis, rendered);
+            // Nothing was fitted: it is the right picture.
+            if found.hypothesis.fit.is_none() || found.hypothesis.note.is_some() {
+                candidates.push(Candidate { found, seen });
             }
         }
-        Ok(Finding { stage: self.stage, right: self.right, mistake, alike })
-    }
-
-    fn at_edges(&mut self) -> Result<Option<Compared>> {
-        at_edges(self.mine, &mut self.studio, &self.right, FINE)
-    }
-
-    /// The mistake whose picture is closest, and another that gives the same picture; `None` if none explains the
-    /// difference.
-    fn in_blocks(&mut self) -> Result<(Option<Compared>, Option<&'static Mistake>)> {
-        let (mut pictures, mut ranked) = (all_mistakes(self.studio.recipe()), Vec::new());
-        for samples in COARSE {
-            ranked.clear();
-            for hypothesis in pictures {
-                let expected = self.studio.render(&hypothesis, samples)?;
-                ranked.push(compare(self.mine, hypothesis, expected));
+        candidates.sort_by(|a, b| a.found.misfit.total_cmp(&b.found.misfit));
+        let fitting: Vec<bool> = (0..candidates.len()).map(|index| fits(&candidates, index)).collect();
+        let of = |index: &usize| candidates[*index].found.hypothesis.mistake;
+        let fitting: Vec<usize> = (0..candidates.len()).filter(|index| fitting[*index]).collect();
+        let section = self.stage.section;
+        let is_right = |index: &&usize| of(index).is_none_or(|mistake| mistake.is_right_in(section));
+        let right = fitting.iter().find(|index| of(index).is_none());
+        let chosen = right.or_else(|| fitting.iter().find(is_right)).or(fitting.first()).copied();
+        let nearest = &candidates[chosen.unwrap_or(0)];
+        let grain = grain(&nearest.seen, &nearest.found);
+        let is_near = nearest.found.misfit < NEARLY;
+        let grain = grain.map(|grain| Grain { is_smoothed: grain.is_smoothed && is_near, ..grain });
+        let is_smoothed = grain.is_some_and(|grain| grain.is_smoothed);
+        let mut finding = Finding {
+            stage: self.stage,
+            right: self.right.clone(),
+            mistake: None,
+            is_sure: true,
+            alike: Vec::new(),
+            grain,
+        };
+        let named = chosen.and_then(|chosen| of(&chosen));
+        if let Some(chosen) = chosen.filter(|_| !is_smoothed) {
+            finding.mistake = named.map(|_| candidates[chosen].found.clone());
+            if named.is_some_and(|named| !named.is_right_in(section)) {
+                let limit = 3.0 * candidates[chosen].found.misfit.max(0.0) + ALIKE;
+                let others = fitting
+                    .iter()
+                    .filter(|other| candidates[**other].found.misfit < limit)
+                    .filter_map(of)
+                    .filter(|other| named.is_some_and(|named| named.id != other.id));
+                others.for_each(|other| {
+                    if !finding.alike.iter().any(|known| known.id == other.id) {
+                        finding.alike.push(other);
+                    }
+                });
             }
-            ranked.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
-            ranked.retain(|found| found.is_noise || found.misfit < HOPELESS * self.right.misfit);
-            ranked.truncate(REFINED);
-            pictures = ranked.iter().map(|found| found.hypothesis.clone()).collect();
+            return Ok(finding);
         }
-        let mut ranked = ranked.into_iter();
-        let Some(best) = ranked.next() else { return Ok((None, None)) };
-        let named = best.hypothesis.mistake;
-        if named.is_some_and(Mistake::is_at_edges)
-            && let Some(found) = self.at_edges()?
+        // Random numbers are not those of ours, so this one is never sure.
+        finding.is_sure = false;
+        let shared = applying_to(self.studio.recipe()).find(|mistake| mistake.id == SHARED);
+        if let Some(shared) = shared.filter(|shared| is_shared(&self.seen, &self.right, shared)) {
+            let mut found = self.right.clone();
+            found.hypothesis.mistake = Some(shared);
+            finding.mistake = Some(found);
+            return Ok(finding);
+        }
+        let guess = candidates.iter().find(|candidate| candidate.found.hypothesis.mistake.is_some());
+        let limit = EXPLAINED * self.right.misfit;
+        finding.mistake = guess.map(|guess| guess.found.clone()).filter(|guess| guess.misfit < limit);
+        Ok(finding)
+    }
+
+    /// Whether the file means the same, written so.
+    fn is_as_right(&self, written: &Written) -> bool {
+        let seen = self.seen(written);
+        let is_same = |(a, b): (&f64, &f64)| a == b || a.is_nan() && b.is_nan();
+        let [a, b] = [&seen, &self.seen].map(|seen| seen.values.as_flattened());
+        seen.size == self.seen.size && a.iter().zip(b).all(is_same)
+    }
+
+    /// A picture, with the right one where it was not rendered.
+    fn filled(&self, rendered: &[[f64; 3]], half: usize) -> Vec<[f64; 3]> {
+        let right = &self.right.rendered.halves[half];
+        let pixels = rendered.iter().zip(right);
+        pixels.map(|(pixel, right)| if pixel[0].is_nan() { *right } else { *pixel }).collect()
+    }
+
+    /// The mistakes that may explain the picture, by small pictures, and where each changes the right picture.
+    fn screened(
+        &mut self,
+        is_wanted: impl Fn(Option<&Mistake>) -> bool,
+    ) -> Result<Vec<(Hypothesis, Option<Vec<bool>>)>> {
+        let recipe = self.studio.recipe().clone();
+        let factor = factor(self.right.hypothesis.size(), recipe.rules.antialiasing);
+        let [width, height] = self.right.hypothesis.size().map(|side| side as usize);
+        let small_right = self.right.rendered.reduced(width, factor as usize);
+        let plain_right = {
+            let mut plain = self.right.hypothesis.clone();
+            plain.plain();
+            self.studio.halves(&plain, factor, SMALL, None)?
+        };
+        let small_seen = self.seen.reduced(factor);
+        let (right, _, right_misfit) = rough(&small_seen, self.right.hypothesis.clone(), small_right.clone());
+        let rest = Rest::new(&small_seen, &small_right);
+        let mut fine: Vec<(Hypothesis, Option<Vec<bool>>)> = Vec::new();
+        let mut ranked = Vec::new();
+        let edges = edges(&self.right.expected, [width, height]);
+        // Where everything is blurred or cheap, not only edges are looked at.
+        let is_masked = recipe.rules.has_bounces() && recipe.camera.defocus_angle_degrees == 0.0;
+        for hypothesis in all_mistakes(&recipe).into_iter().filter(|it| is_wanted(it.mistake)) {
+            let is_only_scaled = hypothesis.is_right_before_writing(&recipe)
+                && Written { levels: 256.0, rounds: false, ..hypothesis.written } == right.written;
+            if is_only_scaled {
+                fine.push((hypothesis, None));
+                continue;
+            }
+            if hypothesis.is_fine {
+                fine.push((hypothesis, is_masked.then(|| edges.clone())));
+                continue;
+            }
+            let is_right = hypothesis.is_right_before_writing(&recipe);
+            let rendered = match is_right {
+                true => small_right.clone(),
+                false => self.studio.halves(&hypothesis, factor, SMALL, None)?,
+            };
+            let is_alike = hypothesis.written == right.written;
+            if is_right && !is_alike && self.is_as_right(&hypothesis.written) {
+                continue;
+            }
+            let seen =
+                if is_alike { small_seen.clone() } else { self.seen(&hypothesis.written).reduced(factor) };
+            let base = if hypothesis.steps.is_some() { &plain_right } else { &small_right };
+            let mask =
+                (!is_right && recipe.rules.antialiasing && !hypothesis.written.order.exchanges_sides())
+                    .then(|| changed(&rendered, base, [width, height], factor, &edges));
+            let (hypothesis, rendered, misfit) = rough(&seen, hypothesis, rendered);
+            let is_plain = hypothesis.steps.is_some();
+            let is_leading = is_alike && {
+                let to = if is_plain { small_right.changed(&plain_right, &rendered) } else { rendered };
+                rest.slopes(&to, false)[0].is_beyond(LEADS_ROUGHLY)
+            };
+            if misfit < HOPELESS * right_misfit || is_leading || (is_right && self.right.is_noise) {
+                ranked.push((misfit, hypothesis, mask));
+            }
+        }
+        ranked.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
+        ranked.truncate(REFINED);
+        let ranked = ranked.into_iter().map(|(_, hypothesis, mask)| (hypothesis, mask));
+        Ok(ranked.chain(fine).collect())
+    }
+}
+
+/// The mistake whose picture is another with other random numbers.
+const SHARED: &str = "same-seed";
+
+/// Whether a candidate leaves only noise, and nothing leads from it towards the reader's picture.
+fn fits(candidates: &[Candidate], index: usize) -> bool {
+    let Candidate { found, seen } = &candidates[index];
+    if !found.is_noise {
+        return false;
+    }
+    let own = &found.hypothesis;
+    let rest = Rest::new(seen, &found.rendered);
+    let leads = |to: &Rendered, at: f64| {
+        let slope = rest.slopes(to, false)[0];
+        slope.is_beyond(Slope { at, ..LEADS }) || slope.is_beyond(LEADS_FAR)
+    };
+    // A part of the picture may be shifted or blurred alone.
+    let leads_somewhere = |to: &Rendered, at: f64| {
+        let slopes = rest.slopes(to, true);
+        slopes[0].is_beyond(Slope { at, ..LEADS })
+            || slopes[1..].iter().any(|part| part.is_beyond(Slope { at: 1.5 * at, deviations: 6.0 }))
+    };
+    if own.recipe.rules.antialiasing {
+        let width = seen.size[0] as usize;
+        let moved = |by: [isize; 2]| {
+            let add = |half: &[[f64; 3]]| {
+                neighbours(half, width, |at, of| at + 0.5 * (of(by) - of(by.map(|x| -x))))
+            };
+            found.rendered.map(add)
+        };
+        let blurred = |sign: f64| {
+            let sides = [[1, 0], [-1, 0], [0, 1], [0, -1]];
+            let add = |half: &[[f64; 3]]| {
+                neighbours(half, width, |at, of| {
+                    at + sign * sides.map(|side| of(side) - at).iter().sum::<f64>()
+                })
+            };
+            found.rendered.map(add)
+        };
+        let sides = [[1, 0], [-1, 0], [0, 1], [0, -1]];
+        if sides.into_iter().any(|side| leads_somewhere(&moved(side), SHIFTED))
+            || [1.0, -1.0].into_iter().any(|sign| leads_somewhere(&blurred(sign), BLURRED))
         {
-            return Ok((Some(found), None));
+            return false;
         }
-        if !best.is_noise && best.misfit >= EXPLAINED * self.right.misfit {
-            return Ok((None, None));
+    }
+    candidates.iter().enumerate().filter(|(other, _)| *other != index).all(|(_, other)| {
+        let theirs = &other.found.hypothesis;
+        let is_comparable = own.written.order == theirs.written.order
+            && own.written.channels == theirs.written.channels
+            && own.written.curve == theirs.written.curve
+            && !theirs.written.truncates
+            && own.mistake.map(|mistake| mistake.id) != theirs.mistake.map(|mistake| mistake.id);
+        if !is_comparable {
+            return true;
         }
-        let others = ranked.filter(|found| best.is_noise && found.is_noise);
-        let mut others = others.filter_map(|found| found.hypothesis.mistake);
-        let alike = others.find(|other| named.is_none_or(|named| named.id != other.id));
-        Ok((Some(best), alike))
-    }
-
-    fn in_noise(&mut self) -> Result<Option<Compared>> {
-        let mut plain = self.right.hypothesis.clone();
-        plain.plain();
-        for mistake in applying_to(&plain.recipe) {
-            if let Shows::InNoise(test) = mistake.shows
-                && test(self.mine, &self.right, &self.studio.render(&plain, 1)?)
-            {
-                return Ok(Some(self.right.blamed_on(mistake)));
-            }
-        }
-        Ok(None)
-    }
-
-    fn in_bytes(&self) -> Option<Compared> {
-        let shows = |mistake: &&Mistake| match mistake.shows {
-            Shows::InBytes(test) => test(self.mine, &self.right),
-            _ => false,
-        };
-        Some(self.right.blamed_on(MISTAKES.iter().find(shows)?))
-    }
+        let to = as_read(&other.found.rendered, &theirs.written, &own.written, seen.size);
+        let is_in_bytes = own.written != theirs.written
+            && own.steps.is_none()
+            && theirs.is_right_before_writing(&own.recipe);
+        !leads(&to, if is_in_bytes { LEADS_IN_BYTES } else { LEADS.at })
+    })
 }
 
-/// Decides, pixel by pixel, between the right picture and mistakes that only show at edges.
-pub(super) fn at_edges(
-    mine: &Mine,
-    studio: &mut Studio,
-    right: &Compared,
-    samples: u64,
-) -> Result<Option<Compared>> {
-    let recipe = studio.recipe().clone();
-    let mistakes = applying_to(&recipe).filter(|mistake| mistake.is_at_edges());
-    let edges = edges(&right.expected, [mine.width as usize, mine.height as usize]);
-    let error = |expected: &[[f64; 3]]| -> f64 {
-        let square = |(index, channel): &(usize, usize)| {
-            let row = index / mine.width as usize;
-            let byte = mine.bytes[*index][*channel];
-            let [linear, _] = right.hypothesis.written.linear(byte, row, mine.height as usize);
-            (linear - expected[*index][*channel]).powi(2)
-        };
-        edges.iter().map(square).sum()
-    };
-    let mut best = (BETTER * error(&right.expected), None);
-    for hypothesis in mistakes.flat_map(|mistake| mistake.pictures(&recipe)) {
-        let expected = studio.render(&hypothesis, samples)?;
-        let error = error(&expected);
-        if error < best.0 {
-            best = (error, Some((hypothesis, expected)));
-        }
+/// The linear values that a picture has if it was written in one way and is read in another with the same curve.
+fn as_read(rendered: &Rendered, from: &Written, to: &Written, [width, height]: [u32; 2]) -> Rendered {
+    if from == to {
+        return rendered.clone();
     }
-    Ok(best.1.map(|(hypothesis, expected)| compare(mine, hypothesis, expected)))
+    let [added, taken] = [from, to].map(|written| if written.rounds { 0.5 } else { 0.0 });
+    rendered.map(|half| {
+        let pixels = half.iter().enumerate();
+        let value = |row: usize, x: f64| {
+            let byte = from.levels * from.curve.displayed(x.max(0.0), row, height as usize) + added - taken;
+            to.curve.linear((byte / to.levels).max(0.0), row, height as usize)
+        };
+        pixels.map(|(index, pixel)| pixel.map(|x| value(index / width as usize, x))).collect()
+    })
 }
 
-/// Pixels and channels at an edge.
-fn edges(expected: &[[f64; 3]], [width, height]: [usize; 2]) -> Vec<(usize, usize)> {
-    let inside = |index: &usize| {
-        let (column, row) = (index % width, index / width);
-        column > 0 && row > 0 && column + 1 < width && row + 1 < height
+/// Changes each value by those at places beside it; the border stays.
+fn neighbours(
+    pixels: &[[f64; 3]],
+    width: usize,
+    change: impl Fn(f64, &dyn Fn([isize; 2]) -> f64) -> f64,
+) -> Vec<[f64; 3]> {
+    let height = pixels.len() / width;
+    let at = |index: usize| {
+        let (x, y) = (index % width, index / width);
+        if x == 0 || y == 0 || x + 1 == width || y + 1 == height {
+            return pixels[index];
+        }
+        [0, 1, 2].map(|channel| {
+            let of =
+                |[dx, dy]: [isize; 2]| pixels[index.wrapping_add_signed(dy * width as isize + dx)][channel];
+            change(pixels[index][channel], &of)
+        })
     };
-    let is_edge = |(index, channel): &(usize, usize)| {
-        let step = |by: usize| (expected[index + by][*channel] - expected[index - by][*channel]).abs();
-        step(1).max(step(width)) >= EDGE
+    (0..pixels.len()).map(at).collect()
+}
+
+/// How much smaller the first pictures are: a common divisor of both sides, if there is a suitable one.
+fn factor([width, height]: [u32; 2], antialiasing: bool) -> u32 {
+    if !antialiasing {
+        return 1;
+    }
+    let wanted = (width / SMALL_WIDTH).max(1);
+    let divides = |factor: &u32| width.is_multiple_of(*factor) && height.is_multiple_of(*factor);
+    (wanted.div_ceil(2)..=2 * wanted)
+        .filter(divides)
+        .min_by_key(|factor| factor.abs_diff(wanted))
+        .unwrap_or(wanted)
+}
+
+/// Pixels at an edge.
+fn edges(expected: &[[f64; 3]], [width, height]: [usize; 2]) -> Vec<bool> {
+    let is_edge = |index: usize| {
+        let (x, y) = (index % width, index / width);
+        if x == 0 || y == 0 || x + 1 == width || y + 1 == height {
+            return false;
+        }
+        (0..3).any(|channel| {
+            let step = |by: usize| (expected[index + by][channel] - expected[index - by][channel]).abs();
+            step(1).max(step(width)) >= EDGE
+        })
     };
-    let places = (0..expected.len()).filter(inside).flat_map(|index| (0..3).map(move |c| (index, c)));
-    places.filter(is_edge).collect()
+    let edges: Vec<bool> = (0..expected.len()).map(is_edge).collect();
+    // A pixel beside an edge changes, too.
+    let near = |index: usize| {
+        let offsets = [0, 1, width, width + 1];
+        offsets.iter().any(|by| edges.get(index + by) == Some(&true) || index >= *by && edges[index - by])
+    };
+    (0..edges.len()).map(near).collect()
+}
+
+/// Where the small picture of a mistake differs from the right one, and at edges, in full size.
+fn changed(
+    small: &Rendered,
+    right: &Rendered,
+    [width, height]: [usize; 2],
+    factor: u32,
+    edges: &[bool],
+) -> Vec<bool> {
+    let (factor, columns) = (factor as usize, width / factor as usize);
+    let (small, right) = (small.mean(), right.mean());
+    let rows = height / factor;
+    let is_changed = |x: usize, y: usize| {
+        let place = y.min(rows - 1) * columns + x.min(columns - 1);
+        (0..3).any(|channel| (small[place][channel] - right[place][channel]).abs() > CHANGED)
+    };
+    let at = |pixel: usize| {
+        let (x, y) = (pixel % width / factor, pixel / width / factor);
+        let around =
+            (y.saturating_sub(1)..=y + 1).any(|y| (x.saturating_sub(1)..=x + 1).any(|x| is_changed(x, y)));
+        edges[pixel] || around
+    };
+    (0..width * height).map(at).collect()
 }
 
 fn all_mistakes(recipe: &Recipe) -> Vec<Hypothesis> {
-    let is_compared = |mistake: &&Mistake| !matches!(mistake.shows, Shows::InNoise(_));
+    let is_compared = |mistake: &&Mistake| mistake.id != SHARED;
     applying_to(recipe).filter(is_compared).flat_map(|mistake| mistake.pictures(recipe)).collect()
 }
 
 /// The stages that can be checked. The final picture places its small balls at random, so every program's differs.
 pub fn stages() -> impl Iterator<Item = &'static Stage> {
-    Stage::ALL.iter().filter(|stage| stage.id != "book")
+    Stage::ALL.iter().filter(|stage| stage.next().is_some() || !stage.is_in_book())
 }
 
 /// The stages that the picture resembles most: first as rendered right or written wrongly and, if none match, with any
 /// mistake.
 fn candidates(mine: &Mine, mut say: impl FnMut(String)) -> Result<Vec<&'static Stage>> {
-    let factor = (mine.width / SMALL_WIDTH).clamp(1, mine.height.max(1));
+    let factor = factor([mine.width, mine.height], true);
     let mut ranked = Vec::new();
     for is_thorough in [false, true] {
         ranked.clear();
+        let factor = if is_thorough { 2 * factor } else { factor };
         let what = if is_thorough { "the mistakes of all stages" } else { "all stages" };
         say(format!("comparing with {what}"));
+        let mut known: Vec<(Written, Seen)> = Vec::new();
         for stage in stages() {
-            let mut studio = Studio::new(stage.recipe(), [mine.width / factor, mine.height / factor])?;
+            let mut studio = Studio::new(stage.recipe(), [mine.width, mine.height])?;
             let right = Hypothesis::right(studio.recipe());
             let recipe = &right.recipe.clone();
-            let is_tried = |picture: &Hypothesis| is_thorough || picture.is_right_before_writing(recipe);
+            let linear = studio.halves(&right, factor, TINY, None)?;
+            let columns = (mine.width / factor).max(1) as usize;
+            let mean = linear.mean();
+            let expected = |pixel: usize, channel: usize| {
+                let (x, y) = (pixel % mine.width as usize, pixel / mine.width as usize);
+                let place = y / factor as usize * columns + (x / factor as usize).min(columns - 1);
+                mean.get(place).map_or(1.0, |pixel| pixel[channel])
+            };
+            let is_tried = |picture: &Hypothesis| {
+                !picture.is_fine && (is_thorough || picture.is_right_before_writing(recipe))
+            };
             let mistakes = all_mistakes(recipe).into_iter().filter(is_tried);
             let mut least = f64::INFINITY;
             for hypothesis in std::iter::once(right).chain(mistakes) {
-                let expected = studio.render(&hypothesis, SMALL)?;
-                let mut difference = rough_difference(mine, factor, &hypothesis, &expected);
-                if hypothesis.mistake.is_some_and(Mistake::is_early) {
-                    // A later stage that looks like the picture is likelier.
-                    difference += FOUND;
-                }
-                least = least.min(difference);
+                let written = hypothesis.written;
+                let is_other_right =
+                    hypothesis.mistake.is_some_and(|mistake| mistake.is_right_in(stage.section));
+                let rendered = match hypothesis.is_right_before_writing(recipe) {
+                    true => linear.clone(),
+                    false => studio.halves(&hypothesis, factor, TINY, None)?,
+                };
+                let fresh;
+                let seen = match known.iter().find(|(known, _)| *known == written && !written.wraps) {
+                    Some((_, seen)) => seen,
+                    None if written.wraps => {
+                        fresh = Seen::of(mine, &written, expected).reduced(factor);
+                        &fresh
+                    }
+                    None => {
+                        known.push((written, Seen::of(mine, &written, expected).reduced(factor)));
+                        &known[known.len() - 1].1
+                    }
+                };
+                let (_, _, misfit) = rough(seen, hypothesis, rendered);
+                // A stage that is right in the usual way is likelier.
+                let more = if is_other_right { FOUND / 2.0 } else { 0.0 };
+                least = least.min(misfit.max(0.0).sqrt() + more);
             }
             ranked.push((least, stage));
         }
@@ -299,29 +591,11 @@ fn candidates(mine: &Mine, mut say: impl FnMut(String)) -> Result<Vec<&'static S
             a.total_cmp(b).then(distance(stage_a).cmp(&distance(stage_b)))
         });
         if ranked.first().is_some_and(|(least, _)| *least < FOUND) {
+            let limit = 1.5 * ranked[0].0 + NEAR;
+            ranked.retain(|(least, _)| *least < limit);
             return Ok(ranked.into_iter().map(|(_, stage)| stage).take(CANDIDATES).collect());
         }
     }
     // No mistake of any stage looks like the picture: one stage is enough to say where it differs.
     Ok(ranked.into_iter().map(|(_, stage)| stage).take(1).collect())
-}
-
-/// Root mean square difference of the thumbnails, display values.
-fn rough_difference(mine: &Mine, factor: u32, hypothesis: &Hypothesis, expected: &[[f64; 3]]) -> f64 {
-    let [width, height] = [mine.width, mine.height].map(|side| side / factor);
-    let shown = hypothesis.written.bytes_of(expected, [width, height]);
-    let mut sum = 0.0;
-    for (place, shown) in (0..).zip(&shown) {
-        let [x, y] = [place % width, place / width].map(|at| at * factor);
-        let square =
-            (y..y + factor).flat_map(|y| (x..x + factor).map(move |x| (y * mine.width + x) as usize));
-        for (channel, shown) in shown.iter().enumerate() {
-            let seen = |at: usize| {
-                hypothesis.written.unwrapped(mine.bytes[at][channel], expected[place as usize][channel])
-            };
-            let bytes: f64 = square.clone().map(|at| f64::from(seen(at))).sum();
-            sum += ((bytes / f64::from(factor * factor) - f64::from(*shown)) / 256.0).powi(2);
-        }
-    }
-    (sum / (3.0 * expected.len() as f64)).sqrt()
 }

@@ -1,6 +1,6 @@
 //! The reader's picture in 8 bits.
 
-use crate::job::output::{Damage, ReadPicture, Values, decode_picture, displayed, read_picture};
+use crate::job::output::{Damage, Incomplete, ReadPicture, Values, decode_picture, displayed, read_picture};
 use anyhow::{Result, anyhow, bail, ensure};
 use std::io::Cursor;
 use std::path::Path;
@@ -15,7 +15,9 @@ const PIXEL_LIMIT: u64 = 4_000_000;
 pub struct Mine {
     pub width: u32,
     pub height: u32,
-    /// RGB, row by row from the top.
+    /// Rows of the file that are known: all, unless it is still being written.
+    pub rows: u32,
+    /// RGB, row by row from the top; black where it is not known.
     pub bytes: Vec<[u8; 3]>,
     /// The largest value that the file can hold.
     pub most: u16,
@@ -30,7 +32,16 @@ pub struct Mine {
 impl Mine {
     /// A picture of these bytes, as a P3 file without damage would hold it.
     pub fn of_bytes(bytes: Vec<[u8; 3]>, [width, height]: [u32; 2]) -> Mine {
-        Mine { width, height, bytes, most: 255, format: "P3", damages: Vec::new(), notes: Vec::new() }
+        Mine {
+            width,
+            height,
+            rows: height,
+            bytes,
+            most: 255,
+            format: "P3",
+            damages: Vec::new(),
+            notes: Vec::new(),
+        }
     }
 
     /// Reads a file and detects its format from the first bytes.
@@ -61,6 +72,21 @@ impl Mine {
         Ok(mine)
     }
 
+    /// Reads the rows of a file that is still being written; `None` if there is nothing to see yet, or all of it.
+    pub fn begun(path: &Path) -> Option<Mine> {
+        let Incomplete { picture, .. } = read_picture(path, None).err()?.downcast().ok()?;
+        let mut mine = Mine::of(*picture).ok()?;
+        let [least_width, least_height] = SIZE_MIN;
+        if mine.width < least_width || mine.height < least_height {
+            return None;
+        }
+        // The last number may be cut.
+        mine.rows = (mine.bytes.len().saturating_sub(1) as u64 / u64::from(mine.width)) as u32;
+        mine.bytes.truncate((mine.rows * mine.width) as usize);
+        mine.bytes.resize((mine.width * mine.height) as usize, [0; 3]);
+        Some(mine)
+    }
+
     /// Reads the picture from the bytes of a file.
     pub fn decode(file: &[u8]) -> Result<Mine, String> {
         let read = decode_picture(Cursor::new(file), file.len() as u64, None);
@@ -82,7 +108,7 @@ impl Mine {
             (128.0 * (low + high)) as u8
         };
         let bytes = rgb.iter().map(|pixel| pixel.map(byte)).collect();
-        Ok(Mine { width, height, bytes, most, format, damages, notes })
+        Ok(Mine { width, height, rows: height, bytes, most, format, damages, notes })
     }
 
     /// Bytes in a step of the file's values, at least 1.

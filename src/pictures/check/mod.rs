@@ -5,26 +5,30 @@
 //! otherwise the mistake with the closest picture is named.
 
 mod answer;
-mod bytes;
 mod hypothesis;
 mod judge;
 mod mine;
 mod mistakes;
+mod noise;
 mod tracer;
+mod watch;
+mod written;
 
 pub use crate::job::output::Damage;
 pub use answer::{Answer, AnswerKind, Section};
 pub use hypothesis::{Compared, Hypothesis, Mistake, Studio};
-pub use judge::{Finding, judge, stages};
+pub use judge::{Finding, judge, judge_again, stages};
 pub use mine::Mine;
 pub use mistakes::MISTAKES;
+pub use watch::{Change, Watched};
 
 use super::answer::{Verdict, deliver, lines};
-use crate::cli::terminal::Display;
+use crate::cli::terminal::{Display, print_beside};
 use crate::cli::{CheckOptions, ProgressChoice, check_outputs};
 use crate::numbers::heat::HeatScale;
-use crate::system::files::{make_directory, replace_file};
-use anyhow::{Context, Result};
+use crate::system::console;
+use crate::system::files::{STANDARD, make_directory, replace_file, write_text};
+use anyhow::{Context, Result, ensure};
 use image::{ImageFormat, RgbImage};
 use serde_json::json;
 use std::io;
@@ -32,29 +36,113 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// Checks a picture. Exit code 0 means right, 1 wrong, and 2 that it could not be checked.
+/// Checks pictures. Exit code 0 means that all are right, 1 that one is wrong, and 2 that one could not be checked.
 pub fn run(options: &CheckOptions) -> Result<ExitCode> {
+    let files = options.outputs();
     options.out.iter().try_for_each(|directory| make_directory(directory))?;
-    let files = options.pictures();
-    check_outputs([options.picture.as_path()], files.iter().chain(&options.json).map(PathBuf::as_path))?;
-    let mine = Mine::read(&options.picture)?;
-    let mut display = Display::new(ProgressChoice::Auto, 1, "{wide_msg}", "", Duration::ZERO);
-    let finding = judge(&mine, options.stage, |what| display.update(0, || what))?;
-    display.clear();
+    let inputs = options.pictures.iter().map(PathBuf::as_path);
+    check_outputs(inputs, files.iter().chain(&options.json).map(PathBuf::as_path))?;
+    let [picture] = options.pictures.as_slice() else {
+        ensure!(
+            options.out.is_none(),
+            "--out is for a single picture, but there are {}",
+            options.pictures.len()
+        );
+        return if options.watch { watch::run(options) } else { each(options) };
+    };
+    if options.watch {
+        return watch::run(options);
+    }
+    let mine = Mine::read(picture)?;
+    let finding = judged(&mine, options, None)?;
     for (path, pixels) in files.iter().zip(pictures(&mine, &finding)) {
         let image = RgbImage::from_raw(mine.width, mine.height, pixels.into_iter().flatten().collect());
         let image = image.context("a picture has another size than its pixels")?;
         replace_file(path, |writer| image.write_to(writer, ImageFormat::Png).map_err(io::Error::other))?;
     }
-    let text = text(&options.picture, &mine, &finding, &files);
-    deliver(options.json.as_deref(), &text, 1, &figures(&options.picture, &mine, &finding, &files))?;
+    let text = text(picture, &mine, &finding, &files);
+    deliver(options.json.as_deref(), &text, 1, &figures(picture, &mine, &finding, &files))?;
     Ok(finding.answer(&mine).verdict().exit_code())
+}
+
+/// Judges a picture and shows what is being tried.
+fn judged(mine: &Mine, options: &CheckOptions, last: Option<&Finding>) -> Result<Finding> {
+    let mut display = Display::new(ProgressChoice::Auto, 1, "{wide_msg}", "", Duration::ZERO);
+    let finding = judge_again(mine, options.stage, last, |what| display.update(0, || what));
+    display.clear();
+    finding
+}
+
+/// Checks several pictures, one line each.
+fn each(options: &CheckOptions) -> Result<ExitCode> {
+    let mut lines = Lines::new(options);
+    let mut worst = Verdict::Same;
+    for picture in &options.pictures {
+        let judged = Mine::read(picture).and_then(|mine| Ok((judged(&mine, options, None)?, mine)));
+        let verdict = match judged {
+            Ok((finding, mine)) => {
+                lines.add(picture, &mine, &finding)?;
+                finding.answer(&mine).verdict()
+            }
+            Err(reason) => {
+                lines.fail(picture, &reason)?;
+                Verdict::Unclear
+            }
+        };
+        worst = match (worst, verdict) {
+            (Verdict::Different, _) | (_, Verdict::Different) => Verdict::Different,
+            (Verdict::Unclear, _) | (_, Verdict::Unclear) => Verdict::Unclear,
+            _ => Verdict::Same,
+        };
+    }
+    Ok(worst.exit_code())
+}
+
+/// One line for each verdict: as text, and as JSON if that is asked for.
+struct Lines<'a> {
+    json: Option<&'a Path>,
+    written: String,
+}
+
+impl<'a> Lines<'a> {
+    fn new(options: &'a CheckOptions) -> Self {
+        Lines { json: options.json.as_deref(), written: String::new() }
+    }
+
+    fn add(&mut self, path: &Path, mine: &Mine, finding: &Finding) -> Result<()> {
+        let answer = finding.answer(mine);
+        let rows = if mine.rows < mine.height {
+            format!("{} of {} rows, ", mine.rows, mine.height)
+        } else {
+            String::new()
+        };
+        let section = finding.stage.section;
+        let text = format!("{}: {rows}section {section}: {}\n", path.display(), answer.title);
+        self.say(&text, figures(path, mine, finding, &[]))
+    }
+
+    fn fail(&mut self, path: &Path, reason: &anyhow::Error) -> Result<()> {
+        let figures = json!({ "picture": path.display().to_string(), "error": format!("{reason:#}") });
+        self.say(&format!("{}: {reason:#}\n", path.display()), figures)
+    }
+
+    fn say(&mut self, text: &str, mut figures: serde_json::Value) -> Result<()> {
+        print_beside(self.json, text)?;
+        let Some(target) = self.json else { return Ok(()) };
+        figures["schema"] = 1.into();
+        let line = format!("{figures}\n");
+        if target == Path::new(STANDARD) {
+            return console::write_out(&line);
+        }
+        self.written += &line;
+        Ok(write_text(target, &self.written)?)
+    }
 }
 
 /// The reader's picture, ours, and a heat map of the difference: 8-bit RGB, row by row from the top.
 pub fn pictures(mine: &Mine, finding: &Finding) -> [Vec<[u8; 3]>; 3] {
     let right = &finding.right;
-    let ours = right.hypothesis.written.bytes_of(&right.expected, [mine.width, mine.height]);
+    let ours = right.hypothesis.written.bytes_of(&right.rendered.mean(), [mine.width, mine.height]);
     let difference = mine.bytes.iter().zip(&ours).map(|(mine, ours)| {
         let square = |channel: usize| ((f64::from(mine[channel]) - f64::from(ours[channel])) / 255.0).powi(2);
         HeatScale::ERROR.colour(((square(0) + square(1) + square(2)) / 3.0).sqrt())
@@ -96,7 +184,9 @@ fn figures(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> se
             "title": mistake.title,
             "remedy": mistake.remedy,
             "note": found.hypothesis.note,
-            "explains_all": found.is_noise,
+            "explains_all": finding.is_sure,
+            "is_right": finding.is_other_right(),
+            "also": finding.alike.iter().map(|alike| alike.id).collect::<Vec<_>>(),
         })
     });
     json!({
@@ -104,9 +194,11 @@ fn figures(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> se
         "format": mine.format,
         "width": mine.width,
         "height": mine.height,
+        "rows": mine.rows,
         "stage": finding.stage.id,
         "section": finding.stage.section,
         "is_right": finding.answer(mine).verdict() == Verdict::Same,
+        "verdict": finding.answer(mine).title,
         "mistake": mistake,
         "damages": mine.damages,
         "files": files.iter().map(|path| path.display().to_string()).collect::<Vec<_>>(),

@@ -17,26 +17,56 @@ pub struct Steps {
     pub aspect: fn(u32, u32) -> f64,
     /// Number of pixel spacings along a side of this many pixels.
     pub spacings: fn(f64) -> f64,
-    /// Centre of the first pixel, in pixels from the corner.
-    pub first_pixel: f64,
+    /// Centre of the first pixel, in pixels from the corner: right and down.
+    pub first_pixel: [f64; 2],
+    /// The first picture's colour, from column and row as shares of the last ones, and of the whole sides.
+    pub gradient: fn([f64; 2], [f64; 2]) -> DVec3,
+    /// Width of the square over which the samples of a pixel are spread, pixels.
+    pub filter: f64,
     /// Least distance of a hit; `None` for the stage's.
     pub t_min: Option<f64>,
     /// Upper limit on a hit's distance, given the closest hit so far.
     pub t_max: fn(f64) -> f64,
-    /// Both roots of the quadratic, from `a`, `h` and the square root of the discriminant.
+    /// The distances of a sphere's two surfaces, from `a`, `h` and `c` of the quadratic; NaN if there are none.
     pub roots: fn(f64, f64, f64) -> [f64; 2],
+    /// The vector by which a ray moves along its direction in one unit of distance.
+    pub along: fn(DVec3) -> DVec3,
+    /// How far a bounced ray starts above the surface, scene units.
+    pub lift: f64,
     /// Outward normal, from the vector centre to point and the radius.
     pub normal: fn(DVec3, f64) -> DVec3,
     /// Whether a ray with this direction meets the front of a surface with this outward normal.
     pub is_front: fn(DVec3, DVec3) -> bool,
-    /// Offset added to the normal of a matte surface.
-    pub diffuse: fn(&mut Random) -> DVec3,
+    /// The colour of a normal where normals are shown.
+    pub normal_colour: fn(DVec3) -> DVec3,
+    /// The height of a direction in the sky's gradient, 0 to 1.
+    pub sky: fn(DVec3) -> f64,
+    /// The random vector of matte surfaces, which should be a unit vector.
+    pub vector: fn(&mut Random) -> DVec3,
+    /// The random vector of fuzz, likewise.
+    pub fuzz: fn(&mut Random) -> DVec3,
+    /// The direction from a matte surface: from the random vector, the normal and the point; `None` for the stage's.
+    pub scatter: Option<fn(DVec3, DVec3, DVec3) -> DVec3>,
+    /// What a bounce off a surface of this albedo adds to the light, and the factor of what comes after it.
+    pub combine: fn(DVec3) -> [DVec3; 2],
+    /// The share of the normal's part that a reflection takes away: 2 in the book.
+    pub reflects: f64,
     /// Transforms the reflected direction before fuzz is added.
     pub before_fuzz: fn(DVec3) -> DVec3,
+    /// Whether a direction below the surface of metal ends the path.
+    pub absorbs_below: bool,
     /// Transforms the incoming direction before glass refracts or reflects it.
     pub before_glass: fn(DVec3) -> DVec3,
+    /// Probability that glass reflects, from the cosine and the ratio of the refraction indices.
+    pub reflectance: fn(f64, f64) -> f64,
+    /// Factor of a refracted direction's part along the normal.
+    pub inwards: f64,
+    /// Attenuation of glass.
+    pub glass: DVec3,
     /// Whether glass refracts where it should reflect, and reflects where it should refract.
     pub swaps_glass: bool,
+    /// The point of the lens, of radius 1, from two random numbers.
+    pub disk: fn([f64; 2]) -> [f64; 2],
     /// Origin and direction of a ray, from the eye, the point on the lens and the target in the plane in focus.
     pub lens: fn(DVec3, DVec3, DVec3) -> [DVec3; 2],
 }
@@ -46,16 +76,38 @@ impl Steps {
         random: |pixel| pixel,
         aspect: |width, height| f64::from(width) / f64::from(height),
         spacings: |pixels| pixels,
-        first_pixel: 0.5,
+        first_pixel: [0.5; 2],
+        gradient: |[x, y], _| DVec3::new(x, y, 0.0),
+        filter: 1.0,
         t_min: None,
         t_max: |closest_so_far| closest_so_far,
-        roots: |a, h, sqrtd| [(h - sqrtd) / a, (h + sqrtd) / a],
+        roots: |a, h, c| {
+            let discriminant = h * h - a * c;
+            if discriminant < 0.0 {
+                return [f64::NAN; 2];
+            }
+            let sqrtd = discriminant.sqrt();
+            [(h - sqrtd) / a, (h + sqrtd) / a]
+        },
+        along: |direction| direction,
+        lift: 0.0,
         normal: |to_point, radius| to_point / radius,
         is_front: |direction, outward| direction.dot(outward) < 0.0,
-        diffuse: Random::unit_vector,
+        normal_colour: |normal| 0.5 * (normal + 1.0),
+        sky: |direction| 0.5 * (direction.normalize().y + 1.0),
+        vector: Random::unit_vector,
+        fuzz: Random::unit_vector,
+        scatter: None,
+        combine: |albedo| [DVec3::ZERO, albedo],
+        reflects: 2.0,
         before_fuzz: DVec3::normalize,
+        absorbs_below: true,
         before_glass: DVec3::normalize,
+        reflectance: schlick,
+        inwards: 1.0,
+        glass: DVec3::ONE,
         swaps_glass: false,
+        disk: |[u, v]| on_circle(u.sqrt(), v),
         lens: |_, on_lens, target| [on_lens, target - on_lens],
     };
 }
@@ -82,18 +134,17 @@ pub struct Random {
 
 impl Random {
     /// Two numbers in `0..1`.
-    fn pair(&mut self) -> [f64; 2] {
+    pub fn pair(&mut self) -> [f64; 2] {
         self.counter += 1;
         let [a, b, ..] = pcg4d([self.counter, self.sequence, 0x1D1E, 0xC4EC]);
         [a, b].map(|bits| f64::from(bits) / 4_294_967_296.0)
     }
 
-    fn unit_vector(&mut self) -> DVec3 {
+    pub fn unit_vector(&mut self) -> DVec3 {
         let [u, v] = self.pair();
         let z = 1.0 - 2.0 * u;
-        let radius = (1.0 - z * z).max(0.0).sqrt();
-        let (sin, cos) = (std::f64::consts::TAU * v).sin_cos();
-        DVec3::new(radius * cos, radius * sin, z)
+        let [x, y] = on_circle((1.0 - z * z).max(0.0).sqrt(), v);
+        DVec3::new(x, y, z)
     }
 
     pub fn in_unit_sphere(&mut self) -> DVec3 {
@@ -101,11 +152,17 @@ impl Random {
         self.pair()[0].cbrt() * unit
     }
 
-    fn in_disk(&mut self) -> [f64; 2] {
-        let [u, v] = self.pair();
-        let (sin, cos) = (std::f64::consts::TAU * v).sin_cos();
-        [u.sqrt() * cos, u.sqrt() * sin]
+    /// Three numbers in `0..1`.
+    pub fn triple(&mut self) -> DVec3 {
+        let ([x, y], [z, _]) = (self.pair(), self.pair());
+        DVec3::new(x, y, z)
     }
+}
+
+/// The point on a circle at `turn` of a whole turn.
+pub fn on_circle(radius: f64, turn: f64) -> [f64; 2] {
+    let (sin, cos) = (std::f64::consts::TAU * turn).sin_cos();
+    [radius * cos, radius * sin]
 }
 
 pub struct Tracer<'a> {
@@ -123,7 +180,8 @@ pub struct Tracer<'a> {
 }
 
 impl<'a> Tracer<'a> {
-    pub fn new(recipe: &'a Recipe, steps: Steps) -> Self {
+    /// The tracer of a picture, whose pixels each stand for `factor` x `factor` of the reader's.
+    pub fn new(recipe: &'a Recipe, steps: Steps, factor: u32) -> Self {
         let Recipe { camera, settings, rules, .. } = recipe;
         let size @ [width, height] = [settings.width, settings.height];
         let focus = camera.effective_focus_distance();
@@ -132,7 +190,9 @@ impl<'a> Tracer<'a> {
         let across = basis.u * viewport_height * (steps.aspect)(width, height);
         let down = -basis.v * viewport_height;
         let corner = camera.look_from - focus * basis.w - (across + down) / 2.0;
-        let spacings = |pixels: u32| (steps.spacings)(f64::from(pixels)).max(1.0);
+        let factor = f64::from(factor);
+        let spacings = |pixels: u32| ((steps.spacings)(factor * f64::from(pixels)) / factor).max(1.0);
+        let first_pixel = steps.first_pixel.map(|at| (at + (factor - 1.0) / 2.0) / factor);
         let (across, down) = (across / spacings(width), down / spacings(height));
         let radius = focus * (camera.defocus_angle_degrees.to_radians() / 2.0).tan();
         let t_min = rules.surface.smallest_distance().unwrap_or(BOOK_T_MIN);
@@ -142,23 +202,28 @@ impl<'a> Tracer<'a> {
             max_depth: settings.max_depth,
             size,
             center: camera.look_from,
-            first_pixel: corner + steps.first_pixel * (across + down),
+            first_pixel: corner + first_pixel[0] * across + first_pixel[1] * down,
             across,
             down,
             lens: (radius > 0.0).then(|| [basis.u * radius, basis.v * radius]),
             t_min: steps.t_min.unwrap_or(t_min),
-            steps,
+            steps: Steps { filter: (steps.filter - 1.0) / factor + 1.0, ..steps },
         }
     }
 
-    /// Pixel means: linear RGB, row by row from the top.
-    pub fn means(&self, samples: u32) -> Vec<[f64; 3]> {
+    /// Pixel means: linear RGB, row by row from the top; NaN where `mask` leaves a pixel out. Each `half` has its own
+    /// random numbers.
+    pub fn means(&self, samples: u32, half: u32, mask: Option<&[bool]>) -> Vec<[f64; 3]> {
         let [width, height] = self.size;
         (0..width * height)
             .into_par_iter()
             .with_min_len(256)
             .map(|pixel| {
-                let mut random = Random { counter: 0, sequence: (self.steps.random)(pixel) };
+                if mask.is_some_and(|mask| !mask[pixel as usize]) {
+                    return [f64::NAN; 3];
+                }
+                let sequence = (self.steps.random)(pixel) ^ (half << 30);
+                let mut random = Random { counter: 0, sequence };
                 let (column, row) = (pixel % width, pixel / width);
                 let sum: DVec3 = (0..samples).map(|_| self.sample(column, row, &mut random)).sum();
                 (sum / f64::from(samples)).to_array()
@@ -166,13 +231,34 @@ impl<'a> Tracer<'a> {
             .collect()
     }
 
+    /// The sphere that the middle of each pixel shows; `None` for the sky.
+    pub fn spheres(&self) -> Vec<Option<&'a Sphere>> {
+        let [width, height] = self.size;
+        let target = |pixel: u32| {
+            self.first_pixel + f64::from(pixel % width) * self.across + f64::from(pixel / width) * self.down
+        };
+        let ray = |pixel: u32| Ray { origin: self.center, direction: target(pixel) - self.center };
+        (0..width * height).map(|pixel| Some(self.nearest(&ray(pixel))?.1)).collect()
+    }
+
     fn sample(&self, column: u32, row: u32, random: &mut Random) -> DVec3 {
-        let offset = if self.rules.antialiasing { random.pair().map(|x| x - 0.5) } else { [0.0; 2] };
+        if self.rules.shading == Shading::ImageGradient {
+            let share = |less: u32| {
+                let of = |at: u32, side: u32| f64::from(at) / f64::from((side - less).max(1));
+                [of(column, self.size[0]), of(row, self.size[1])]
+            };
+            return (self.steps.gradient)(share(1), share(0));
+        }
+        let offset = if self.rules.antialiasing {
+            random.pair().map(|x| (x - 0.5) * self.steps.filter)
+        } else {
+            [0.0; 2]
+        };
         let target = self.first_pixel
             + (f64::from(column) + offset[0]) * self.across
             + (f64::from(row) + offset[1]) * self.down;
         let on_lens = self.lens.map_or(self.center, |lens| {
-            let [x, y] = random.in_disk();
+            let [x, y] = (self.steps.disk)(random.pair());
             self.center + x * lens[0] + y * lens[1]
         });
         let [origin, direction] = (self.steps.lens)(self.center, on_lens, target);
@@ -180,40 +266,45 @@ impl<'a> Tracer<'a> {
     }
 
     fn colour(&self, mut ray: Ray, column: u32, random: &mut Random) -> DVec3 {
-        let mut throughput = DVec3::ONE;
+        let (mut light, mut throughput) = (DVec3::ZERO, DVec3::ONE);
         for _ in 0..self.max_depth {
-            let Some(hit) = self.hit(&ray) else { return throughput * self.sky(ray.direction) };
+            let Some(hit) = self.hit(&ray) else { return light + throughput * self.sky(ray.direction) };
             match self.rules.shading {
                 Shading::FirstHitRed => return DVec3::X,
-                Shading::Normals => return 0.5 * (hit.normal + 1.0),
+                Shading::Normals => return (self.steps.normal_colour)(hit.normal),
                 Shading::Path | Shading::ImageGradient => {}
             }
             let Some((attenuation, direction)) = self.scatter(&ray, &hit, random) else {
-                return DVec3::ZERO;
+                return light;
             };
             let strip = [0.1, 0.3, 0.5, 0.7, 0.9][(column * 5 / self.size[0]).min(4) as usize];
-            throughput *= if self.rules.reflectance_strips { DVec3::splat(strip) } else { attenuation };
-            ray = Ray { origin: hit.point, direction };
+            let attenuation = if self.rules.reflectance_strips { DVec3::splat(strip) } else { attenuation };
+            let [added, factor] = (self.steps.combine)(attenuation);
+            light += throughput * added;
+            throughput *= factor;
+            ray = Ray { origin: hit.point + self.steps.lift * hit.normal, direction };
         }
-        DVec3::ZERO
+        light
     }
 
     fn sky(&self, direction: DVec3) -> DVec3 {
-        let a = 0.5 * (direction.normalize().y + 1.0);
-        self.scene.sky.bottom.lerp(self.scene.sky.top, a)
+        self.scene.sky.bottom.lerp(self.scene.sky.top, (self.steps.sky)(direction))
+    }
+
+    fn nearest(&self, ray: &Ray) -> Option<(f64, &'a Sphere)> {
+        let mut found = None;
+        for sphere in &self.scene.spheres {
+            let closest_so_far = found.map_or(f64::INFINITY, |(t, _)| t);
+            if let Some(t) = self.root(sphere, ray, (self.steps.t_max)(closest_so_far)) {
+                found = Some((t, sphere));
+            }
+        }
+        found
     }
 
     fn hit(&self, ray: &Ray) -> Option<Hit> {
-        let mut closest_so_far = f64::INFINITY;
-        let mut found = None;
-        for sphere in &self.scene.spheres {
-            if let Some(t) = self.root(sphere, ray, (self.steps.t_max)(closest_so_far)) {
-                closest_so_far = t;
-                found = Some(sphere);
-            }
-        }
-        let sphere = found?;
-        let point = ray.origin + closest_so_far * ray.direction;
+        let (t, sphere) = self.nearest(ray)?;
+        let point = ray.origin + t * (self.steps.along)(ray.direction);
         let outward = (self.steps.normal)(point - sphere.center, sphere.radius);
         let is_front = (self.steps.is_front)(ray.direction, outward);
         let normal = if is_front { outward } else { -outward };
@@ -225,22 +316,19 @@ impl<'a> Tracer<'a> {
         let a = ray.direction.length_squared();
         let h = ray.direction.dot(to_center);
         let c = to_center.length_squared() - sphere.radius * sphere.radius;
-        let discriminant = h * h - a * c;
-        if discriminant < 0.0 {
-            return None;
-        }
-        (self.steps.roots)(a, h, discriminant.sqrt()).into_iter().find(|t| self.t_min < *t && *t < t_max)
+        (self.steps.roots)(a, h, c).into_iter().find(|t| self.t_min < *t && *t < t_max)
     }
 
     fn scatter(&self, ray: &Ray, hit: &Hit, random: &mut Random) -> Option<(DVec3, DVec3)> {
         let material = &self.scene.materials[hit.material].material;
-        let attenuation = material.albedo().unwrap_or(DVec3::ONE);
+        let attenuation = material.albedo().unwrap_or(self.steps.glass);
         match material.look() {
             Look::Matte => Some((attenuation, self.diffuse(hit, random))),
             Look::Mirror { fuzz } => {
-                let reflected = (self.steps.before_fuzz)(reflect(ray.direction, hit.normal));
-                let direction = reflected + fuzz * random.unit_vector();
-                (direction.dot(hit.normal) > 0.0).then_some((attenuation, direction))
+                let reflected = (self.steps.before_fuzz)(self.reflect(ray.direction, hit.normal));
+                let direction = reflected + fuzz * (self.steps.fuzz)(random);
+                let is_absorbed = self.steps.absorbs_below && direction.dot(hit.normal) <= 0.0;
+                (!is_absorbed).then_some((attenuation, direction))
             }
             Look::Glass { refraction_index } => {
                 let ratio = if hit.is_front { 1.0 / refraction_index } else { refraction_index };
@@ -250,7 +338,10 @@ impl<'a> Tracer<'a> {
     }
 
     fn diffuse(&self, hit: &Hit, random: &mut Random) -> DVec3 {
-        let vector = (self.steps.diffuse)(random);
+        let vector = (self.steps.vector)(random);
+        if let Some(scatter) = self.steps.scatter {
+            return scatter(vector, hit.normal, hit.point);
+        }
         if self.rules.diffuse == Diffuse::Hemisphere {
             return if vector.dot(hit.normal) > 0.0 { vector } else { -vector };
         }
@@ -266,22 +357,26 @@ impl<'a> Tracer<'a> {
             DielectricLaws::RefractOnly => false,
             DielectricLaws::TotalReflection => ratio * sin_theta > 1.0,
             DielectricLaws::Schlick => {
-                ratio * sin_theta > 1.0 || schlick(cos_theta, ratio) > random.pair()[0]
+                ratio * sin_theta > 1.0 || (self.steps.reflectance)(cos_theta, ratio) > random.pair()[0]
             }
         };
         if reflects != self.steps.swaps_glass {
-            return reflect(direction, normal);
+            return self.reflect(direction, normal);
         }
         let across = ratio * (direction + cos_theta * normal);
-        across - (1.0 - across.length_squared()).abs().sqrt() * normal
+        across - self.steps.inwards * (1.0 - across.length_squared()).abs().sqrt() * normal
+    }
+
+    fn reflect(&self, v: DVec3, normal: DVec3) -> DVec3 {
+        v - self.steps.reflects * v.dot(normal) * normal
     }
 }
 
-fn reflect(v: DVec3, normal: DVec3) -> DVec3 {
-    v - 2.0 * v.dot(normal) * normal
+pub fn schlick(cosine: f64, ratio: f64) -> f64 {
+    reflectance(((1.0 - ratio) / (1.0 + ratio)).powi(2), cosine, 5)
 }
 
-fn schlick(cosine: f64, ratio: f64) -> f64 {
-    let r0 = ((1.0 - ratio) / (1.0 + ratio)).powi(2);
-    r0 + (1.0 - r0) * (1.0 - cosine).powi(5)
+/// Schlick's approximation from the reflectance `r0` at normal incidence.
+pub fn reflectance(r0: f64, cosine: f64, power: i32) -> f64 {
+    r0 + (1.0 - r0) * (1.0 - cosine).powi(power)
 }

@@ -83,15 +83,20 @@ pub fn is_lost(document: &Document) -> bool {
     document.camera != home && sees_nothing(document, &document.camera) && !sees_nothing(document, &home)
 }
 
+/// Whether a grid of rays meets nothing but the sky and the ground that the camera of the stage stands on.
 fn sees_nothing(document: &Document, camera: &Camera) -> bool {
-    /// Rays across and down.
-    const RAYS: usize = 9;
-    let scene = document.scene();
+    /// Share of the distance to its center from which on a sphere looks flat.
+    const FLAT: f64 = 0.9;
+    /// Spheres that all rays may be tested against.
+    const TESTS: f64 = 2e6;
+    let (scene, home) = (document.scene(), document.origin.recipe.camera.look_from);
+    let rays = (TESTS / scene.spheres.len().max(1) as f64).sqrt().clamp(9.0, 33.0) as usize;
+    let is_ground = |sphere: &Sphere| sphere.radius >= FLAT * home.distance(sphere.center);
     let is_empty = |index: usize| {
-        let place = [index % RAYS, index / RAYS].map(|along| (along as f64 + 0.5) / RAYS as f64);
-        document.pick(camera, place).is_none_or(|pick| is_ground(&scene.spheres[pick.sphere], camera))
+        let place = [index % rays, index / rays].map(|along| (along as f64 + 0.5) / rays as f64);
+        document.pick(camera, place).is_none_or(|pick| is_ground(&scene.spheres[pick.sphere]))
     };
-    scene.spheres.len() <= MANY && (0..RAYS * RAYS).all(is_empty)
+    scene.spheres.len() <= MANY && (0..rays * rays).all(is_empty)
 }
 
 /// The opaque ground below the camera.
@@ -151,5 +156,19 @@ mod tests {
         assert!(is_lost(document));
         document.camera.look_from = document.scene().spheres[1].center;
         assert!(inside(document));
+    }
+
+    /// As the wheel does it: only the ground is left from afar, and balls fill the picture from near by.
+    #[test]
+    fn what_is_in_sight_is_asked_of_the_picture_at_any_distance() {
+        let mut window = window("weekender --stage book --size 16x9 --device cpu");
+        let document = &mut window.model.document;
+        let home = document.camera;
+        let mut away = |by: f64| {
+            let eye = home.look_at + by * (home.look_from - home.look_at);
+            document.camera = Camera { look_from: eye, ..home };
+            is_lost(document)
+        };
+        assert_eq!([100.0, 1.5, 0.5, 0.2].map(&mut away), [true, false, false, false]);
     }
 }

@@ -105,3 +105,15 @@ fn one_limit_at_a_time_ends_the_render() {
         assert_eq!(harness.state().document().stop, expected, "{name}");
     }
 }
+
+#[test]
+fn the_other_side_follows_as_far_as_its_limits_allow() {
+    for (before, size, expected) in [
+        ([400, 225], [800, 225], [800, 450]),
+        ([400, 225], [400, 450], [800, 450]),
+        ([225, 400], [16384, 400], [9216, 16384]),
+        ([400, 4], [10, 4], [10, 1]),
+    ] {
+        assert_eq!(in_shape(before, size), expected, "{before:?} {size:?}");
+    }
+}

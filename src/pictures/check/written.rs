@@ -1,0 +1,222 @@
+//! How linear values become the bytes of a file, and back.
+
+use super::Mine;
+use crate::job::output::Encoding;
+use crate::job::recipe::Recipe;
+
+/// How a picture is written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Written {
+    pub order: Order,
+    /// Source channels of the written red, green and blue.
+    pub channels: [usize; 3],
+    /// The curve from linear to displayed values.
+    pub curve: Encoding,
+    /// Factor from displayed values to bytes.
+    pub levels: f64,
+    /// Whether values are rounded instead of cut off.
+    pub rounds: bool,
+    /// Whether 256 becomes 0 instead of 255.
+    pub wraps: bool,
+    /// Whether displayed values are cut to whole numbers before they are scaled.
+    pub truncates: bool,
+}
+
+/// The order of the numbers in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    Rows,
+    Flipped,
+    Mirrored,
+    Rotated,
+    /// Moved to the right and down by so many pixels.
+    Moved(i8, i8),
+    /// Column by column, though the header has the right size.
+    Columns,
+    /// The header has width and height exchanged.
+    Exchanged,
+    /// Rows and columns exchanged, in the header as well.
+    Transposed,
+    /// All red values, then all green ones, then all blue ones.
+    Planar,
+    /// One pixel more in each row than the header says.
+    Long,
+    /// One pixel less.
+    Short,
+    /// Each row is filled up to a multiple of four bytes.
+    Padded,
+}
+
+impl Order {
+    /// Index of the picture's value that is the file's value `index`; `None` if that is not part of the picture. `size`
+    /// is that of the file.
+    pub fn source(self, index: usize, [width, height]: [usize; 2]) -> Option<usize> {
+        let (pixel, channel) = (index / 3, index % 3);
+        let (x, y) = (pixel % width, pixel / width);
+        let at = |x: usize, y: usize| Some(3 * (y * width + x) + channel);
+        let in_rows_of = |length: usize| (pixel % length, pixel / length);
+        match self {
+            Order::Rows | Order::Exchanged => Some(index),
+            Order::Flipped => at(x, height - 1 - y),
+            Order::Mirrored => at(width - 1 - x, y),
+            Order::Rotated => at(width - 1 - x, height - 1 - y),
+            Order::Moved(right, down) => {
+                let (x, y) = (x.checked_add_signed((-right).into())?, y.checked_add_signed((-down).into())?);
+                if x < width && y < height { at(x, y) } else { None }
+            }
+            Order::Columns => at(pixel / height, pixel % height),
+            Order::Transposed => Some(3 * (x * height + y) + channel),
+            Order::Planar => Some(3 * (index % (width * height)) + index / (width * height)),
+            Order::Long => {
+                let (x, y) = in_rows_of(width + 1);
+                if x < width { at(x, y) } else { None }
+            }
+            Order::Short => {
+                let (x, y) = in_rows_of(width - 1);
+                if y < height { at(x, y) } else { None }
+            }
+            Order::Padded => {
+                let row = (3 * width).next_multiple_of(4);
+                let (x, y) = (index % row, index / row);
+                (x < 3 * width).then_some(y * 3 * width + x)
+            }
+        }
+    }
+
+    /// Whether the picture is as wide as the file is high.
+    pub fn exchanges_sides(self) -> bool {
+        matches!(self, Order::Exchanged | Order::Transposed)
+    }
+}
+
+/// The reader's picture in linear values, as far as they are known; row by row from the top of what was rendered.
+#[derive(Clone, Debug)]
+pub struct Seen {
+    pub size: [u32; 2],
+    /// NaN where the file does not tell.
+    pub values: Vec<[f64; 3]>,
+    /// Half of the step between neighbouring values.
+    pub half_steps: Vec<[f64; 3]>,
+}
+
+impl Seen {
+    /// What the file shows if it was written so. `expected` says which zeros are overflown whites.
+    pub fn of(mine: &Mine, written: &Written, expected: impl Fn(usize, usize) -> f64) -> Seen {
+        let file = [mine.width as usize, mine.height as usize];
+        let mut size = [mine.width, mine.height];
+        if written.order.exchanges_sides() {
+            size.reverse();
+        }
+        let (mut values, mut half_steps) =
+            (vec![[f64::NAN; 3]; mine.bytes.len()], vec![[0.0; 3]; mine.bytes.len()]);
+        let step = mine.step();
+        let bytes = mine.bytes.as_flattened();
+        for (index, byte) in bytes.iter().take(3 * (mine.rows * mine.width) as usize).enumerate() {
+            let Some(source) = written.order.source(index, file) else { continue };
+            let (pixel, channel) = (source / 3, written.channels[source % 3]);
+            let Some(value) = values.get_mut(pixel) else { continue };
+            let byte = written.unwrapped(*byte, || expected(pixel, channel));
+            let [linear, half] = written.linear(byte, pixel / size[0] as usize, size[1] as usize);
+            (value[channel], half_steps[pixel][channel]) = (linear, half * step);
+        }
+        Seen { size, values, half_steps }
+    }
+
+    /// The mean of each square of `factor` x `factor` pixels.
+    pub fn reduced(&self, factor: u32) -> Seen {
+        let reduce = |of: &[[f64; 3]]| reduced(of, self.size[0] as usize, factor as usize);
+        let size = self.size.map(|side| side / factor);
+        Seen { size, values: reduce(&self.values), half_steps: reduce(&self.half_steps) }
+    }
+}
+
+/// Linear values between these, of a picture that is cut to whole numbers early, may have become either end.
+const NEARLY_WHITE: [f64; 2] = [0.9, 0.9995];
+
+impl Written {
+    pub fn right(recipe: &Recipe) -> Written {
+        Written {
+            order: Order::Rows,
+            channels: [0, 1, 2],
+            curve: Encoding::Book(recipe.rules.transfer),
+            levels: 256.0,
+            rounds: false,
+            wraps: false,
+            truncates: false,
+        }
+    }
+
+    /// The linear value of a byte in a row, and half of its step.
+    pub fn linear(&self, byte: u8, row: usize, height: usize) -> [f64; 2] {
+        let (below, above) = if self.rounds { (-0.5, 0.5) } else { (0.0, 1.0) };
+        let linear =
+            |part: f64| self.curve.linear(((f64::from(byte) + part) / self.levels).max(0.0), row, height);
+        [linear(f64::midpoint(below, above)), (linear(above) - linear(below)) / 2.0]
+    }
+
+    pub fn byte_of(&self, linear: f64, row: usize, height: usize) -> u8 {
+        let displayed = self.curve.displayed(linear.max(0.0), row, height);
+        let displayed = if self.truncates { (displayed + 1e-4).floor() } else { displayed };
+        (self.levels * displayed.min(0.999) + if self.rounds { 0.5 } else { 0.0 }) as u8
+    }
+
+    /// The byte that the reader's program had before it wrapped, as far as ours tells.
+    fn unwrapped(&self, byte: u8, expected: impl Fn() -> f64) -> u8 {
+        if self.wraps && byte == 0 && expected() > 0.5 { 255 } else { byte }
+    }
+
+    /// Bytes in the layout of the file, row by row.
+    pub fn bytes_of(&self, linear: &[[f64; 3]], [width, height]: [u32; 2]) -> Vec<[u8; 3]> {
+        let byte = |index: usize, x: f64| self.byte_of(x, index / width as usize, height as usize);
+        linear.iter().enumerate().map(|(index, pixel)| pixel.map(|x| byte(index, x))).collect()
+    }
+
+    /// What [`Seen`] has in place of these linear values, without noise: as far as the file's range reaches.
+    pub fn predicted(&self, seen: &Seen, linear: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let [width, height] = seen.size.map(|side| side as usize);
+        let rows = linear.chunks(width.max(1)).enumerate();
+        rows.flat_map(|(row, pixels)| {
+            let [least, most] = [0, 255].map(|byte| self.linear(byte, row, height)[0]);
+            let of = move |x: f64| match x {
+                _ if !self.truncates => x.clamp(least, most),
+                _ if x < NEARLY_WHITE[0] => least,
+                _ if x > NEARLY_WHITE[1] => most,
+                _ => f64::NAN,
+            };
+            pixels.iter().map(move |pixel| pixel.map(of))
+        })
+        .collect()
+    }
+
+    /// Rearranges the linear picture to the layout of the file.
+    pub fn laid_out(&self, linear: &[[f64; 3]], size: [u32; 2]) -> Vec<[f64; 3]> {
+        let mut size = size.map(|side| side as usize);
+        if self.order.exchanges_sides() {
+            size.reverse();
+        }
+        let value = |index: usize| {
+            let source = self.order.source(index, size)?;
+            Some(linear.get(source / 3)?[self.channels[source % 3]])
+        };
+        let pixel = |pixel: usize| [0, 1, 2].map(|channel| value(3 * pixel + channel).unwrap_or(0.0));
+        (0..linear.len()).map(pixel).collect()
+    }
+}
+
+/// The mean of each square of `factor` x `factor` pixels, without incomplete squares.
+pub fn reduced(pixels: &[[f64; 3]], width: usize, factor: usize) -> Vec<[f64; 3]> {
+    if factor == 1 {
+        return pixels.to_vec();
+    }
+    let (columns, rows) = (width / factor, pixels.len() / width / factor);
+    let square = |place: usize| {
+        let (x, y) = (place % columns * factor, place / columns * factor);
+        let inside = (y..y + factor).flat_map(|y| (x..x + factor).map(move |x| y * width + x));
+        let mut sum = [0.0; 3];
+        for pixel in inside {
+            (0..3).for_each(|channel| sum[channel] += pixels[pixel][channel]);
+        }
+        sum.map(|sum| sum / (factor * factor) as f64)
+    };
+    (0..columns * rows).map(square).collect()
+}
