@@ -401,7 +401,7 @@ export const diagrams = {
         rays + `<ellipse cx="50" cy="125" rx="${round(4 + A / 14)}" ry="${round(A)}" class="q4 filled"/>` + letter([30, 129 - A / 2], "Fτ", "q4", "end") + label([50, 145 + A], "lens", "q4", "middle") + line([z[0], 125 - blur], [z[0], 125 + blur], "q3 thick") + label([z[0] + 12, 120 - blur], "disk", "q3") +
         line([50 + unitPx, 125 - onViewport], [50 + unitPx, 125 + onViewport], "q3 thick") + measure(225, focus[0], "F", "q5") + measure(250, z[0], "z", "q3") + measure(205, 50 + unitPx, "1", "");
       const share = Math.abs(1 - F / Z);
-      return [svg, `The lens has radius Fτ, and z = ${fixed(Z / F)} F. There the rays fill a disk of ${fixed(blur / A)} Fτ; on the viewport it is τ |1 − F/z| = ${fixed(share)} τ. ${blur < 1 ? "The point is in focus." : ""}`];
+      return [svg, `τ = ${fixed(A / F)}, so the lens has radius Fτ = ${fixed(A / F)} F, and z = ${fixed(Z / F)} F. There the rays fill a disk of ${fixed(blur / A)} Fτ; on the viewport it is τ |1 − F/z| = ${fixed(share)} τ. ${blur < 1 ? "The point is in focus." : ""}`];
     },
   },
   cosine: {

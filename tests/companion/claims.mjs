@@ -48,7 +48,7 @@ const below = (value, limit) => within(-Infinity, value, limit);
 const isRed = ([r, g]) => r > 200 && g < 60;
 const isGround = ([r, g, b]) => g > 1.25 * b && r > 1.1 * b;
 const isBlue = ([r, , b]) => b > 1.5 * r;
-const isSky = ([r, g, b]) => b > 1.05 * r && b > 150;
+const isSky = ([r, g, b]) => b > 1.05 * r && g > 150;
 const UNDER = [0.45, 0.68, 0.55, 0.74], RIM = [0.6, 0.5, 0.74, 0.65], GLASS_TOP = [0.05, 0.28, 0.2, 0.38], MIRROR = [0.08, 0.42, 0.18, 0.7];
 const BALL_EDGE = [0.76, 0.45, 0.84, 0.85], ARC = [0.05, 0.35, 0.12, 0.7], FRONT = [0.1, 0.8, 0.9, 1], FOCUS = [0.48, 0.3, 0.62, 0.55];
 const MIDDLE = [0.42, 0.35, 0.58, 0.65];
@@ -77,11 +77,11 @@ export const claims = [
   ["glass-refract?index=1.1", "strip of ground along its upper rim", (now) => now.mean(isGround, [0.1, 0.2, 0.14, 0.26]) > 0.02],
   ["hollow-glass?index=1", "bright rings are left", (now) => {
     // Ground has no blue.
-    const [inner, between, outer, outside] = [0.7, 0.72, 0.77, 0.81].map((y) => now.mean(([, , b]) => b, [0.12, y, 0.18, y + 0.008]));
-    return (inner > 2 * between && outer > 2 * between && outside < 10) || [inner, between, outer, outside];
+    const [inside, inner, between, outer, outside] = [0.615, 0.7, 0.72, 0.77, 0.81].map((y) => now.mean(([, , b]) => b, [0.12, y, 0.18, y + 0.008]));
+    return (inner > 2 * between && outer > 2 * between && inside + outside < 20) || [inside, inner, between, outer, outside];
   }],
   ["fov-wide?vfov=120", "no longer reach the edges", (now, was) => isSky(now.at(48, 8)) && was.at(48, 8)[0] < 30],
-  ["fov-narrow?vfov=5", "where they touch", (now) => now.at(60, 135)[2] > 80 && now.at(60, 135)[0] < 30 && now.at(420, 135)[0] > 80 && now.at(420, 135)[2] < 30],
+  ["fov-narrow?vfov=5", "where they touch", (now) => now.at(60, 135)[2] > 80 && now.at(60, 135)[2] < 220 && now.mean(isSky) < 0.05 && now.at(420, 135)[0] > 80 && now.at(420, 135)[2] < 30],
   ["view-close?vfov=8", "the blue ball alone fills most", (now, was) => now.mean(isBlue) > 0.7 && was.mean(isBlue) < 0.5],
   ["defocus?defocus=0", "the second panel is the first", (now, _, usual) => below(now.difference(usual.get("view-close")), 2)],
   ["defocus?defocus=20", "the other two balls blur twice as much", (now, was) => below(now.steepest(BALL_EDGE) / was.steepest(BALL_EDGE), 0.95)],
