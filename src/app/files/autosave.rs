@@ -20,8 +20,8 @@ use std::time::{Duration, Instant};
 /// Writing a film takes at most one part in this many of the time.
 const SHARE: u32 = 20;
 
-/// Edits that are written faster than this are written at once.
-const AT_ONCE: Duration = Duration::from_millis(200);
+/// Edits of scenes with at most so many spheres are written at once, however busy the machine is.
+const AT_ONCE: usize = 10_000;
 
 /// How long a window waits for another that is about to end.
 const PATIENCE: Duration = Duration::from_millis(200);
@@ -186,7 +186,7 @@ impl Autosave {
             place: claimed.map(|(place, _)| place),
             every,
             films: Writing::default(),
-            edits: Writing::default(),
+            edits: Writing { written: last.steps.last().cloned(), ..Writing::default() },
             offered: None,
             answered: Vec::new(),
             is_restoring: last.film.is_some(),
@@ -242,7 +242,8 @@ impl Autosave {
         (document, changes): (&Document, &Changes),
         tracing: &Tracing,
     ) -> Option<String> {
-        let told = self.edits.follow(|took| took.saturating_sub(AT_ONCE) * SHARE);
+        let is_small = document.scene().spheres.len() <= AT_ONCE;
+        let told = self.edits.follow(|took| if is_small { Duration::ZERO } else { took * SHARE });
         if let Some(place) = self.place.as_ref().filter(|_| !changes.is_in_gesture)
             && self.edits.is_due(context, document.clone())
         {
