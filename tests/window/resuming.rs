@@ -41,7 +41,8 @@ fn a_resumed_film_goes_on_as_the_flags_say() {
         assert_eq!(document.stage().map(|stage| stage.id), Some("defocus"));
         assert_eq!((document.camera.vfov_degrees, document.settings.width), (31.0, 48));
         // Its samples are those of an uninterrupted render.
-        let [resumed, whole] = ["resumed.exr", "whole.exr"].map(|name| directory.path().join(name));
+        let saved = tempfile::tempdir().unwrap();
+        let [resumed, whole] = ["resumed.exr", "whole.exr"].map(|name| saved.path().join(name));
         save(&mut harness, Command::SaveAs(OutputFormat::Exr), &resumed);
         let mut harness = open(&format!("{PICTURE} --samples 90"));
         until(&mut harness, "the end", has_samples(90));
