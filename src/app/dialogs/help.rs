@@ -56,6 +56,7 @@ pub(super) fn ui(ui: &mut Ui, height: f32) -> Outcome {
     let area = ScrollArea::vertical().max_height(height).min_scrolled_height(height);
     area.auto_shrink(false).show(ui, |ui| {
         let (count, half) = if ui.available_width() < TWO_COLUMNS { (1, GROUPS.len()) } else { (2, 4) };
+        ui.spacing_mut().item_spacing.x = 24.0;
         ui.columns(count, |columns| {
             for (ui, groups) in columns.iter_mut().zip(GROUPS.chunks(half)) {
                 ui.spacing_mut().item_spacing.y = 0.0;

@@ -121,7 +121,7 @@ mod tests {
     fn documents_come_back_as_they_were_and_share_what_they_shared() {
         let directory = tempfile::tempdir().unwrap();
         let (scene, path) = (directory.path().join("own.toml"), directory.path().join("edits.json"));
-        let cover = Recipe::builtin("cover").unwrap();
+        let cover = Recipe::builtin("book").unwrap();
         std::fs::write(&scene, file::to_toml(&cover)).unwrap();
         let origins = [
             Origin::of_stage(Stage::find("metal").unwrap()),

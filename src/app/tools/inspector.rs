@@ -179,7 +179,8 @@ fn at_other(at: [u32; 2], mine: [u32; 2], theirs: [u32; 2]) -> Option<[u32; 2]> 
     let [x, y] = [0, 1].map(|axis| {
         let place = (f64::from(at[axis]) + 0.5) / f64::from(mine[axis]) - 0.5;
         let place = if is_same_shape { place } else { place * stretch[axis] / least };
-        let pixel = ((place + 0.5) * f64::from(theirs[axis])).floor();
+        // Rounding must not lead to the pixel before.
+        let pixel = ((place + 0.5) * f64::from(theirs[axis]) + 1e-6).floor();
         (pixel >= 0.0 && pixel < f64::from(theirs[axis])).then_some(pixel as u32)
     });
     Some([x?, y?])

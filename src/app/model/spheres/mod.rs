@@ -90,7 +90,7 @@ fn sees_nothing(document: &Document, camera: &Camera) -> bool {
     /// Spheres that all rays may be tested against.
     const TESTS: f64 = 2e6;
     let (scene, home) = (document.scene(), document.origin.recipe.camera.look_from);
-    let rays = (TESTS / scene.spheres.len().max(1) as f64).sqrt().clamp(9.0, 33.0) as usize;
+    let rays = (TESTS / scene.spheres.len().max(1) as f64).sqrt().clamp(8.0, 32.0) as usize & !1;
     let is_ground = |sphere: &Sphere| sphere.radius >= FLAT * home.distance(sphere.center);
     let is_empty = |index: usize| {
         let place = [index % rays, index / rays].map(|along| (along as f64 + 0.5) / rays as f64);
