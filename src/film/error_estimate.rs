@@ -60,8 +60,9 @@ impl ErrorEstimate {
 impl Film {
     /// The error estimated from the halves. With `A` and `B` the means of `a` and `b` samples, and `s` and `t` the parts
     /// of `mean((A - B)^2)` that are their variances, `MSE = mean((A - B)^2) (s a^2 + t b^2) / (a + b)^2`. This is a
-    /// quarter of the squared difference when `a = b`, as after every even number of samples. The root is at least [`ROUNDING_LIMIT`]. `None` with one half, while a half has no
-    /// samples, and while all of it is black, because equal halves say nothing of light that no path has found.
+    /// quarter of the squared difference when `a = b`, as after every even number of samples. The root is at least
+    /// [`ROUNDING_LIMIT`]. `None` with one half, while a half has no samples, and while all of it is black, because equal
+    /// halves say nothing of light that no path has found.
     pub fn error(&self) -> Option<ErrorEstimate> {
         let [half_a, half_b] = self.halves.as_slice() else { return None };
         let (count_a, count_b) = (self.half_sample_count(0) as f64, self.half_sample_count(1) as f64);

@@ -50,7 +50,8 @@ impl ReferenceMeans {
     }
 }
 
-/// The standard error of a pixel's mean, linear RGB, estimated from the halves; see [`Film::error`].
+/// The standard error of a pixel's mean, linear RGB, estimated from the halves, as if their variances were inverse to their
+/// numbers of samples. [`Film::error`] measures how far that is so; the two are equal after even numbers of samples.
 pub fn standard_error(film: &Film, pixel: usize) -> Option<[f64; 3]> {
     let [half_a, half_b] = film.halves() else { return None };
     let (a, b) = (film.half_sample_count(0) as f64, film.half_sample_count(1) as f64);
@@ -160,6 +161,9 @@ mod tests {
         film.record(0..3, 0).unwrap();
         let error = standard_error(&film, 0).unwrap();
         assert!(error.iter().all(|x| (x - 2.0_f64.sqrt()).abs() < 1e-12), "{error:?}");
+        film.halves_mut()[1][0] = PixelSum([1 << 24; 3]);
+        film.record(3..4, 0).unwrap();
+        let error = standard_error(&film, 0).unwrap();
         assert!((film.error().unwrap().rmse - error[0]).abs() < 1e-12);
         assert_eq!(standard_error(&Film::new(1, 1, 2), 0), None);
     }

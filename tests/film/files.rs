@@ -74,9 +74,9 @@ fn another_version_is_refused() {
     let whole = std::fs::read(&path).unwrap();
     let writer = concat!("Weekender ", env!("CARGO_PKG_VERSION")).to_owned();
     for (needle, offset, digit, layout, samples) in [
-        (&b"\nsample_version = 3"[..], 18, b'2', 4, 2),
-        (b"version = 4", 10, b'9', 9, 3),
-        (b"version = 4", 10, b'3', 3, 3),
+        (&b"\nsample_version = 4"[..], 18, b'2', 4, 2),
+        (b"\nversion = 4", 11, b'9', 9, 4),
+        (b"\nversion = 4", 11, b'3', 3, 4),
     ] {
         std::fs::write(&path, &whole).unwrap();
         spoil(&path, needle, offset, digit);

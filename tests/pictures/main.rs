@@ -223,7 +223,7 @@ fn files_that_are_no_pictures_are_refused() {
         (b"P3 99999 99999 255", "99999x99999"),
         (b"P6 99999 99999 255\n", "99999x99999"),
         (b"GIF89a", "it is a GIF file"),
-        (b"", "it is not a PNG"),
+        (b"", "it is empty"),
     ] {
         let reason = Mine::decode(file).unwrap_err();
         assert!(reason.contains(word), "{reason} should say {word}");

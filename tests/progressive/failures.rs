@@ -1,7 +1,7 @@
 //! Failures and panics of backends, listeners and the render thread.
 
 use super::common::{
-    CPU, FAILING, Fake, PATIENCE, PAUSE, expected, forgetful, job, other_cpu, parts, spoiling, started,
+    CPU, FAILING, Fake, PATIENCE, PAUSE, expected, forgetful, job, other_cpu, parts, said, spoiling, started,
     started_with, stopped, wait_for, wait_until,
 };
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -19,7 +19,7 @@ fn a_failing_backend_hands_its_film_to_the_cpu() {
     let progressive = started(FAILING, Plan::samples(100));
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::Samples));
-    assert_eq!(status.messages, ["reference failed: pulled out; the CPU continues the same picture"]);
+    assert_eq!(said(&status), ["reference failed: pulled out; the CPU continues the same picture"]);
     assert_eq!(status.given_up, ["reference"]);
     assert_eq!(parts(&status), [("reference", 16), ("cpu", 84)]);
     // A point of the history names its backend and has the error of its samples.
@@ -118,7 +118,7 @@ fn uncollected_samples_are_rendered_by_the_next_backend() {
         }
         let samples = progressive.status().samples_per_pixel;
         wait_for(&progressive, samples + 64);
-        let messages = stopped(progressive).messages;
+        let messages = said(&stopped(progressive));
         assert!(messages.len() == 1 && messages[0].starts_with("cpu failed: pulled out"), "{messages:?}");
     }
 }
@@ -139,7 +139,7 @@ fn old_backend_continues_if_another_is_unavailable() {
     // So it does for a new render.
     progressive.start(RenderRequest::new(job(2), FAILING, Plan::endless()));
     wait_for(&progressive, 4);
-    assert_eq!(stopped(progressive).messages, [message]);
+    assert_eq!(said(&stopped(progressive)), [message]);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Films, pictures and samples that pass between render, renderer and user.
 
 use super::common::{
-    CPU, FAILING, Fake, PATIENCE, PAUSE, expected, film, idle, job, other_cpu, parts, picture, scripted,
+    CPU, FAILING, Fake, PATIENCE, PAUSE, expected, film, idle, job, other_cpu, parts, picture, said, scripted,
     started, started_with, stopped, usual, wait_for, wait_until,
 };
 use std::ops::Range;
@@ -251,7 +251,7 @@ fn status_describes_the_current_backend() {
     assert!(status.prepare >= first.prepare + PREPARATION, "{status:?}");
     let names = [first.backend, status.backend].map(|backend| backend.map(|backend| backend.name));
     assert_eq!(names, [Some("cpu"), Some("reference")]);
-    assert_eq!(status.messages, ["a layer is too thin"], "only once");
+    assert_eq!(said(&status), ["a layer is too thin"], "only once");
 
     // A backend can give up a thread during use.
     let progressive = started_with(CPU, Plan::samples(8), |_| {

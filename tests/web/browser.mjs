@@ -119,12 +119,12 @@ await panel(glass).scrollIntoViewIfNeeded();
 // Running a figure moves no text; the sliders do, since they must not cover it.
 seen.jumps = JSON.stringify(await heights()) !== JSON.stringify(heightsBefore);
 await button(glass, "Adjust").click();
-await panel(glass).locator("summary").click();
 await shot("live");
 seen.drag = await changes(() => picture(glass), async () => {
   await drag(glass, 120, 40);
   await finished(glass);
 });
+await panel(glass).locator("summary").click();
 const slider = (id, label) => panel(id).getByRole("slider", { name: label });
 seen.slider = await changes(() => picture(glass), async () => {
   await slider(glass, "Index of refraction").fill("1.31");
