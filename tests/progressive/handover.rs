@@ -1,8 +1,8 @@
 //! Films, pictures and samples that pass between render, renderer and user.
 
 use super::common::{
-    CPU, FAILING, Fake, PATIENCE, PAUSE, expected, film, idle, job, other_cpu, parts, picture, said, scripted,
-    started, started_with, stopped, usual, wait_for, wait_until,
+    CPU, FAILING, Fake, PATIENCE, PAUSE, expected, film, idle, job, other_cpu, parts, picture, said,
+    scripted, started, started_with, stopped, usual, wait_for, wait_until,
 };
 use std::ops::Range;
 use std::sync::mpsc::channel;
@@ -249,7 +249,8 @@ fn status_describes_the_current_backend() {
     wait_until(&progressive, |status| status.contributions.len() == 2);
     let status = stopped(progressive);
     assert!(status.prepare >= first.prepare + PREPARATION, "{status:?}");
-    let names = [first.backend, status.backend].map(|backend| backend.map(|backend| backend.name));
+    let names =
+        [first.backend.clone(), status.backend.clone()].map(|backend| backend.map(|backend| backend.name));
     assert_eq!(names, [Some("cpu"), Some("reference")]);
     assert_eq!(said(&status), ["a layer is too thin"], "only once");
 
