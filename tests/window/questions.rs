@@ -4,6 +4,9 @@ use eframe::egui;
 use weekender::app::{Command, Document, Remembered, Show, Window};
 use weekender::progressive::Status;
 
+/// The pixel that is read, its bytes, whether it is the other picture's, and the means of both if they are compared.
+pub type Read = ([u32; 2], [u8; 3], bool, Option<[[f64; 3]; 2]>);
+
 pub trait Ask {
     fn shown_document(&self) -> &Document;
 
@@ -66,7 +69,7 @@ pub trait Ask {
 
     /// The pixel that the panel describes, its bytes, whether it is one of the other picture, and the radiance of the other
     /// picture and of this one, if they are compared.
-    fn readout(&self) -> Option<([u32; 2], [u8; 3], bool, Option<[[f64; 3]; 2]>)>;
+    fn readout(&self) -> Option<Read>;
 
     fn is_presenting(&self) -> bool;
 
@@ -192,7 +195,7 @@ impl Ask for Window {
         self.tools.inspector.readout().map(|readout| (readout.pixel.at, readout.pixel.mean))
     }
 
-    fn readout(&self) -> Option<([u32; 2], [u8; 3], bool, Option<[[f64; 3]; 2]>)> {
+    fn readout(&self) -> Option<Read> {
         let readout = self.tools.inspector.readout()?;
         let compared = readout.compared.as_ref().map(|[theirs, mine]| [theirs.mean, mine.mean]);
         Some((readout.pixel.at, readout.pixel.bytes, readout.is_other, compared))

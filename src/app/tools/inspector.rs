@@ -57,6 +57,12 @@ pub struct Readout {
     pub compared: Option<[Pixel; 2]>,
 }
 
+/// Column and row.
+type At = [u32; 2];
+
+/// See [`OtherFilm::id`].
+type OtherId = (u64, u64);
+
 /// The pixel under the pointer and what is known about it.
 #[derive(Default)]
 pub struct Inspector {
@@ -64,9 +70,9 @@ pub struct Inspector {
     /// The pointer is over the other picture.
     is_over_other: bool,
     /// By pixel, film and number of samples.
-    mine: Query<([u32; 2], PictureId, u64), ([u32; 2], Pixel)>,
+    mine: Query<(At, PictureId, u64), (At, Pixel)>,
     /// None where the other picture has no pixel.
-    theirs: Query<([u32; 2], (u64, u64)), ([u32; 2], Option<Pixel>)>,
+    theirs: Query<(At, OtherId), (At, Option<Pixel>)>,
     readout: Option<Readout>,
 }
 

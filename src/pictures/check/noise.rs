@@ -56,7 +56,7 @@ fn field(blocks: &[(Block, [f64; 3])], width: usize, value: impl Fn(usize, usize
     let (mut means, mut near, mut far, mut count) = (0.0, 0.0, 0.0, 0.0);
     let mut relatives = Vec::new();
     for (block, variance) in blocks {
-        for channel in 0..3 {
+        for (channel, variance) in variance.iter().enumerate() {
             let value = |x: u32, y: u32| value(y as usize * width + x as usize, channel);
             let pixels = || block.y.clone().flat_map(|y| block.x.clone().map(move |x| (x, y)));
             let number = pixels().count() as f64;
@@ -73,7 +73,7 @@ fn field(blocks: &[(Block, [f64; 3])], width: usize, value: impl Fn(usize, usize
             near += one;
             far += two;
             count += 1.0;
-            relatives.push(mean * mean / variance[channel].max(1e-6));
+            relatives.push(mean * mean / variance.max(1e-6));
         }
     }
     let count: f64 = f64::max(count, 1.0);
