@@ -229,7 +229,7 @@ pub struct Compared {
     pub differing: f64,
     /// The middle of each block that differs by more than noise, the worst first: column and row.
     pub places: Vec<[u32; 2]>,
-    /// The picture of the hypothesis, with what was fitted, and what it predicts in the values that [`Seen`] has.
+    /// The picture of the hypothesis, with what was fitted, and what it predicts in the values that `Seen` has.
     pub rendered: Rendered,
     pub expected: Vec<[f64; 3]>,
 }

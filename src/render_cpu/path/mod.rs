@@ -1,8 +1,8 @@
 //! The path loop.
 //!
-//! Packets of rays go through three phases: [`intersect`] finds the nearest hits; [`shade`] adds light, ends paths and
-//! finds the hit points and random numbers of those that continue; [`scatter`] spawns the next rays, from the hits or
-//! from the camera. [`schedule`] keeps the lanes full and lets packets take turns. [`rules`] holds what only early
+//! Packets of rays go through three phases: `intersect` finds the nearest hits; `shade` adds light, ends paths and
+//! finds the hit points and random numbers of those that continue; `scatter` spawns the next rays, from the hits or
+//! from the camera. `schedule` keeps the lanes full and lets packets take turns. `rules` holds what only early
 //! stages of the book need.
 //!
 //! Twin: shaders/path.wgsl
