@@ -6,8 +6,9 @@ use super::mistakes::applying_to;
 use super::noise::{Grain, grain, is_shared};
 use super::written::{Seen, Written};
 use crate::job::recipe::Recipe;
-use crate::stages::Stage;
+use crate::stages::{Stage, SurfaceRule};
 use anyhow::{Context, Result, bail};
+use std::cmp::Ordering;
 
 /// Samples per pixel of the right picture, and of the other candidates.
 const FINE: [u64; 2] = [256, 128];
@@ -54,7 +55,7 @@ const NEARLY: f64 = 3e-4;
 const SAMPLES_LEAST: f64 = 8.0;
 
 /// Stages judged when the stage is unknown.
-const CANDIDATES: usize = 3;
+const CANDIDATES: usize = 4;
 
 /// Root mean square difference below which a stage counts as recognised, display values.
 const FOUND: f64 = 0.03;
@@ -113,20 +114,47 @@ impl Finding {
         };
         (class, found.misfit)
     }
+
+    fn closeness(&self, other: &Finding) -> Ordering {
+        let [(class, misfit), (their_class, their_misfit)] = [self.rank(), other.rank()];
+        class.cmp(&their_class).then(misfit.total_cmp(&their_misfit))
+    }
 }
 
 /// Judges a picture, of `stage` if it is known. `say` is told what is being tried.
 pub fn judge(mine: &Mine, stage: Option<&'static Stage>, mut say: impl FnMut(String)) -> Result<Finding> {
-    let stages = match stage {
-        Some(stage) if !stages().any(|known| known == stage) => bail!(
-            "{} cannot be checked: its small spheres are placed at random, so every program's picture of it is another; \
-             check an earlier section, such as --stage defocus",
-            stage.id
-        ),
-        Some(stage) => vec![stage],
-        None => candidates(mine, &mut say)?,
+    if let Some(stage) = stage {
+        if !stages().any(|known| known == stage) {
+            bail!(
+                "{} cannot be checked: its small spheres are placed at random, so every program's picture of it is \
+                 another; check an earlier section, such as --stage defocus",
+                stage.id
+            );
+        }
+        return judge_among(mine, &[stage], &mut say)?.context("there is no stage to compare with");
+    }
+    let near = candidates(mine, false, &mut say)?;
+    let found = judge_among(mine, &near, &mut say)?;
+    let is_settled = |found: &Finding| {
+        found.is_sure || found.is_too_little() || found.named().is_some_and(|named| named.id == SHARED)
     };
-    let (mut trials, mut best) = (Vec::new(), None);
+    if let Some(found) = found.as_ref().filter(|found| is_settled(found)) {
+        return Ok(found.clone());
+    }
+    let mut more = candidates(mine, true, &mut say)?;
+    more.retain(|stage| !near.contains(stage));
+    let mut found: Vec<Finding> = found.into_iter().chain(judge_among(mine, &more, &mut say)?).collect();
+    found.sort_by(|a, b| a.closeness(b));
+    found.into_iter().next().context("there is no stage to compare with")
+}
+
+/// The closest finding among these stages.
+fn judge_among(
+    mine: &Mine,
+    stages: &[&'static Stage],
+    say: &mut impl FnMut(String),
+) -> Result<Option<Finding>> {
+    let (mut trials, mut findings) = (Vec::new(), Vec::new());
     for stage in stages {
         say(format!("comparing with {}", stage.id));
         let trial = Trial::new(mine, stage)?;
@@ -136,18 +164,36 @@ pub fn judge(mine: &Mine, stage: Option<&'static Stage>, mut say: impl FnMut(Str
         }
         let finding = trial.finding()?;
         if finding.is_right() {
-            return Ok(finding);
+            return Ok(Some(finding));
         }
-        keep_closer(&mut best, finding);
+        findings.push(finding);
     }
     for trial in trials {
-        if best.as_ref().is_some_and(|best: &Finding| best.is_sure && best.is_other_right()) {
+        if findings.iter().any(Finding::is_other_right) {
             break;
         }
         say(format!("trying the mistakes of {}", trial.stage.id));
-        keep_closer(&mut best, trial.finding()?);
+        findings.push(trial.finding()?);
     }
-    best.context("there is no stage to compare with")
+    findings.sort_by(Finding::closeness);
+    let mut findings = findings.into_iter();
+    let Some(mut best) = findings.next() else { return Ok(None) };
+    if let Some(found) = best.mistake.as_ref().filter(|_| best.is_sure && !best.is_other_right()) {
+        let limit = 3.0 * found.misfit.max(0.0) + ALIKE;
+        for other in findings {
+            // The right picture of another stage may be meant.
+            best.is_sure &= other.right.misfit >= limit;
+            let named = other.named().filter(|_| other.is_sure);
+            let is_new = |other: &&Mistake| {
+                best.named().is_none_or(|named| named.id != other.id)
+                    && !best.alike.iter().any(|known| known.id == other.id)
+            };
+            if let Some(named) = named.filter(is_new) {
+                best.alike.push(named);
+            }
+        }
+    }
+    Ok(Some(best))
 }
 
 /// As [`judge`], and tries first what was found last.
@@ -167,12 +213,6 @@ pub fn judge_again(
         }
     }
     judge(mine, stage, say)
-}
-
-fn keep_closer(best: &mut Option<Finding>, finding: Finding) {
-    if best.as_ref().is_none_or(|best| finding.rank() < best.rank()) {
-        *best = Some(finding);
-    }
 }
 
 /// A picture compared with the right one of a stage.
@@ -240,6 +280,8 @@ impl<'a> Trial<'a> {
         let grain = grain(&nearest.seen, &nearest.found);
         let is_near = nearest.found.misfit < NEARLY;
         let grain = grain.map(|grain| Grain { is_smoothed: grain.is_smoothed && is_near, ..grain });
+        // Of a stage that does not fit, the noise tells nothing.
+        let grain = grain.filter(|grain| is_near || grain.samples >= SAMPLES_LEAST);
         let is_smoothed = grain.is_some_and(|grain| grain.is_smoothed);
         let mut finding = Finding {
             stage: self.stage,
@@ -530,71 +572,74 @@ pub fn stages() -> impl Iterator<Item = &'static Stage> {
     Stage::ALL.iter().filter(|stage| stage.next().is_some() || !stage.is_in_book())
 }
 
-/// The stages that the picture resembles most: first as rendered right or written wrongly and, if none match, with any
+/// The stages that the picture resembles most, as rendered right or written wrongly, or, if `is_thorough`, with any
 /// mistake.
-fn candidates(mine: &Mine, mut say: impl FnMut(String)) -> Result<Vec<&'static Stage>> {
+fn candidates(mine: &Mine, is_thorough: bool, mut say: impl FnMut(String)) -> Result<Vec<&'static Stage>> {
     let factor = factor([mine.width, mine.height], true);
     let mut ranked = Vec::new();
-    for is_thorough in [false, true] {
-        ranked.clear();
-        let factor = if is_thorough { 2 * factor } else { factor };
-        let what = if is_thorough { "the mistakes of all stages" } else { "all stages" };
-        say(format!("comparing with {what}"));
-        let mut known: Vec<(Written, Seen)> = Vec::new();
-        for stage in stages() {
-            let mut studio = Studio::new(stage.recipe(), [mine.width, mine.height])?;
-            let right = Hypothesis::right(studio.recipe());
-            let recipe = &right.recipe.clone();
-            let linear = studio.halves(&right, factor, TINY, None)?;
-            let columns = (mine.width / factor).max(1) as usize;
-            let mean = linear.mean();
-            let expected = |pixel: usize, channel: usize| {
-                let (x, y) = (pixel % mine.width as usize, pixel / mine.width as usize);
-                let place = y / factor as usize * columns + (x / factor as usize).min(columns - 1);
-                mean.get(place).map_or(1.0, |pixel| pixel[channel])
+    let factor = if is_thorough { 2 * factor } else { factor };
+    let what = if is_thorough { "the mistakes of all stages" } else { "all stages" };
+    say(format!("comparing with {what}"));
+    let mut known: Vec<(Written, Seen)> = Vec::new();
+    for stage in stages() {
+        let mut studio = Studio::new(stage.recipe(), [mine.width, mine.height])?;
+        let right = Hypothesis::right(studio.recipe());
+        let recipe = &right.recipe.clone();
+        let linear = studio.halves(&right, factor, TINY, None)?;
+        let columns = (mine.width / factor).max(1) as usize;
+        let mean = linear.mean();
+        let expected = |pixel: usize, channel: usize| {
+            let (x, y) = (pixel % mine.width as usize, pixel / mine.width as usize);
+            let place = y / factor as usize * columns + (x / factor as usize).min(columns - 1);
+            mean.get(place).map_or(1.0, |pixel| pixel[channel])
+        };
+        let is_tried = |picture: &Hypothesis| {
+            let is_other_right = picture.mistake.is_some_and(|mistake| mistake.is_right_in(stage.section));
+            !picture.is_fine && (is_thorough || is_other_right || picture.is_right_before_writing(recipe))
+        };
+        let mistakes = all_mistakes(recipe).into_iter().filter(is_tried);
+        let mut least = f64::INFINITY;
+        for hypothesis in std::iter::once(right).chain(mistakes) {
+            let written = hypothesis.written;
+            let rendered = match hypothesis.is_right_before_writing(recipe) {
+                true => linear.clone(),
+                false => studio.halves(&hypothesis, factor, TINY, None)?,
             };
-            let is_tried = |picture: &Hypothesis| {
-                !picture.is_fine && (is_thorough || picture.is_right_before_writing(recipe))
+            let fresh;
+            let seen = match known.iter().find(|(known, _)| *known == written && !written.wraps) {
+                Some((_, seen)) => seen,
+                None if written.wraps => {
+                    fresh = Seen::of(mine, &written, expected).reduced(factor);
+                    &fresh
+                }
+                None => {
+                    known.push((written, Seen::of(mine, &written, expected).reduced(factor)));
+                    &known[known.len() - 1].1
+                }
             };
-            let mistakes = all_mistakes(recipe).into_iter().filter(is_tried);
-            let mut least = f64::INFINITY;
-            for hypothesis in std::iter::once(right).chain(mistakes) {
-                let written = hypothesis.written;
-                let is_other_right =
-                    hypothesis.mistake.is_some_and(|mistake| mistake.is_right_in(stage.section));
-                let rendered = match hypothesis.is_right_before_writing(recipe) {
-                    true => linear.clone(),
-                    false => studio.halves(&hypothesis, factor, TINY, None)?,
-                };
-                let fresh;
-                let seen = match known.iter().find(|(known, _)| *known == written && !written.wraps) {
-                    Some((_, seen)) => seen,
-                    None if written.wraps => {
-                        fresh = Seen::of(mine, &written, expected).reduced(factor);
-                        &fresh
-                    }
-                    None => {
-                        known.push((written, Seen::of(mine, &written, expected).reduced(factor)));
-                        &known[known.len() - 1].1
-                    }
-                };
-                let (_, _, misfit) = rough(seen, hypothesis, rendered);
-                // A stage that is right in the usual way is likelier.
-                let more = if is_other_right { FOUND / 2.0 } else { 0.0 };
-                least = least.min(misfit.max(0.0).sqrt() + more);
-            }
-            ranked.push((least, stage));
+            let (_, _, misfit) = rough(seen, hypothesis, rendered);
+            least = least.min(misfit.max(0.0).sqrt());
         }
-        // Of stages with equal pictures, prefer the one with the closer width.
-        let distance = |stage: &Stage| stage.setup.width.abs_diff(mine.width);
-        ranked.sort_by(|(a, stage_a), (b, stage_b)| {
-            a.total_cmp(b).then(distance(stage_a).cmp(&distance(stage_b)))
-        });
-        if ranked.first().is_some_and(|(least, _)| *least < FOUND) {
-            let limit = 1.5 * ranked[0].0 + NEAR;
-            ranked.retain(|(least, _)| *least < limit);
-            return Ok(ranked.into_iter().map(|(_, stage)| stage).take(CANDIDATES).collect());
+        ranked.push((least, stage));
+    }
+    // Of stages with equal pictures, prefer the one with the closer width.
+    let distance = |stage: &Stage| stage.setup.width.abs_diff(mine.width);
+    ranked
+        .sort_by(|(a, stage_a), (b, stage_b)| a.total_cmp(b).then(distance(stage_a).cmp(&distance(stage_b))));
+    if ranked.first().is_some_and(|(least, _)| *least < FOUND) {
+        let limit = 1.5 * ranked[0].0 + NEAR;
+        ranked.retain(|(least, _)| *least < limit);
+        let mut near: Vec<_> = ranked.into_iter().map(|(_, stage)| stage).take(CANDIDATES).collect();
+        // What 9.3 shows as a fault is right in the sections before it.
+        if near.iter().any(|stage| stage.setup.rules.surface == SurfaceRule::Acne) {
+            let before = stages().filter(|stage| matches!(stage.section, "9.1" | "9.2"));
+            let missing: Vec<_> = before.filter(|stage| !near.contains(stage)).collect();
+            near.extend(missing);
         }
+        return Ok(near);
+    }
+    if !is_thorough {
+        return Ok(Vec::new());
     }
     // No mistake of any stage looks like the picture: one stage is enough to say where it differs.
     Ok(ranked.into_iter().map(|(_, stage)| stage).take(1).collect())
