@@ -585,7 +585,16 @@ fn candidates(mine: &Mine, is_thorough: bool, mut say: impl FnMut(String)) -> Re
         let mut studio = Studio::new(stage.recipe(), [mine.width, mine.height])?;
         let right = Hypothesis::right(studio.recipe());
         let recipe = &right.recipe.clone();
-        let linear = studio.halves(&right, factor, TINY, None)?;
+        // Without antialiasing, a smaller picture has coarser steps than the reader's, made smaller.
+        let is_exact = !recipe.rules.antialiasing;
+        let mut rendered = |hypothesis: &Hypothesis| -> Result<Rendered> {
+            if is_exact {
+                let whole = studio.halves(hypothesis, 1, TINY, None)?;
+                return Ok(whole.reduced(hypothesis.size()[0] as usize, factor as usize));
+            }
+            studio.halves(hypothesis, factor, TINY, None)
+        };
+        let linear = rendered(&right)?;
         let columns = (mine.width / factor).max(1) as usize;
         let mean = linear.mean();
         let expected = |pixel: usize, channel: usize| {
@@ -603,7 +612,7 @@ fn candidates(mine: &Mine, is_thorough: bool, mut say: impl FnMut(String)) -> Re
             let written = hypothesis.written;
             let rendered = match hypothesis.is_right_before_writing(recipe) {
                 true => linear.clone(),
-                false => studio.halves(&hypothesis, factor, TINY, None)?,
+                false => rendered(&hypothesis)?,
             };
             let fresh;
             let seen = match known.iter().find(|(known, _)| *known == written && !written.wraps) {

@@ -241,6 +241,20 @@ fn a_slope_tells_how_far_a_direction_leads() {
     }
 }
 
+#[test]
+fn the_right_picture_of_every_stage_is_right_without_the_stage() {
+    for stage in stages() {
+        let mut studio = Studio::new(stage.recipe(), [160, 90]).unwrap();
+        let mut right = Hypothesis::right(studio.recipe());
+        right.recipe.settings.seed = 1;
+        let shown = studio.render(&right, 64).unwrap();
+        let mine = picture_of(right.written.bytes_of(&shown, right.size()), right.size());
+        let finding = judge(&mine, None, |_| {}).unwrap();
+        let named = finding.named().map(|named| named.id);
+        assert!(finding.is_right(), "{} as {}: {named:?}, {}", stage.id, finding.stage.id, finding.is_sure);
+    }
+}
+
 /// A verdict is earned by the picture: other bytes than ours alone name nothing.
 #[test]
 fn what_only_resembles_a_mistake_is_not_named_surely() {
