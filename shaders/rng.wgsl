@@ -48,17 +48,12 @@ fn sobol_pair(index: u32, rearrangement: u32) -> vec2u {
     return vec2u(u, pascal(u));
 }
 
-// Moves `key` to the dimensions of `bounce`.
-fn stream_of(key: u32, bounce: u32) -> u32 {
-    return key + bounce * GOLDEN_RATIO;
-}
-
 // The key that separates the Sobol scramblings of pixels, halves and seeds.
 fn pixel_key(seed: u32, half: u32, pixel: u32) -> u32 {
     return mix32(mix32(seed + half * GOLDEN_RATIO) ^ pixel);
 }
 
-// The start of a pixel's streams of numbers; 0 for samplers that hash the pixel itself.
+// The key that separates a pixel's scramblings; 0 for samplers that hash the pixel itself.
 fn sampler_key(seed: u32, half: u32, pixel: u32) -> u32 {
     if SAMPLER == SAMPLER_SOBOL {
         return pixel_key(seed, half, pixel);
@@ -69,13 +64,10 @@ fn sampler_key(seed: u32, half: u32, pixel: u32) -> u32 {
 // Two pairs of numbers for a path's next ray; the second pair matters only `with_lens`, for camera rays.
 fn numbers(seed: u32, pixel: u32, counter: u32, key: u32, bounce: u32, with_lens: bool) -> vec4u {
     if SAMPLER == SAMPLER_SOBOL {
-        var rearrangement = select(0u, FIRST_REARRANGEMENT, bounce == 1u);
-        rearrangement = select(rearrangement, SECOND_REARRANGEMENT, bounce == 2u);
-        let stream = select(stream_of(key, bounce), key, bounce <= 2u);
-        let index = laine_karras(counter, mix32(stream));
-        let first = sobol_pair(index, rearrangement);
+        let index = laine_karras(counter, mix32(key + bounce - min(bounce, LAST_TOGETHER)));
+        let first = sobol_pair(index, bounce * REARRANGEMENT);
         if with_lens {
-            return vec4u(first, sobol_pair(index, SECOND_REARRANGEMENT));
+            return vec4u(first, sobol_pair(index, LAST_TOGETHER * REARRANGEMENT));
         }
         return first.xyxy;
     }

@@ -1,7 +1,7 @@
 //! Numeric constants that host and shaders share.
 
 use crate::film::{FIXED_POINT_MAX, FIXED_POINT_SCALE, RADIANCE_LIMIT};
-use crate::kernel::sampling::{FIRST_REARRANGEMENT, GOLDEN_RATIO, SECOND_REARRANGEMENT, sine_coefficients};
+use crate::kernel::sampling::{GOLDEN_RATIO, LAST_TOGETHER, REARRANGEMENT, sine_coefficients};
 use crate::stages::BOOK_T_MIN;
 use std::fmt::Write;
 
@@ -103,8 +103,8 @@ constants! {
 
     also
     GOLDEN_RATIO: u32,
-    FIRST_REARRANGEMENT: u32,
-    SECOND_REARRANGEMENT: u32,
+    REARRANGEMENT: u32,
+    LAST_TOGETHER: u32,
     BOOK_T_MIN: f64,
     FIXED_POINT_SCALE: f64,
     FIXED_POINT_MAX: f64,

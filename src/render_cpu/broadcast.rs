@@ -3,7 +3,6 @@
 
 use super::lanes::{MAX_LANES, Wide, WideU};
 use super::sphere::BroadcastSphere;
-use crate::kernel::sampling::stream_stride;
 use crate::kernel::{CameraTable, RECORD_COLUMNS, Real};
 use crate::prepared::PreparedScene;
 
@@ -22,10 +21,8 @@ pub struct BroadcastScene<R> {
     pub sky_middle: [Wide<R>; 3],
     /// `PreparedScene::sky_slope`, broadcast.
     pub sky_slope: [Wide<R>; 3],
-    /// The difference between the sampler's streams of consecutive rays.
-    pub stream_stride: WideU,
-    /// The difference between the sampler's streams of a path's first and last ray.
-    pub last_stream: WideU,
+    /// The bounce at which a path's last ray starts.
+    pub last_bounce: WideU,
     /// The first of `PreparedScene::records` by column, for kernels that hold a column in a register.
     pub columns: Box<[Wide<R>; RECORD_COLUMNS]>,
 }
@@ -45,10 +42,8 @@ impl<R: Real> BroadcastScene<R> {
                 column.0[index] = number;
             }
         }
-        let stride = stream_stride(prepared.settings.sampler);
         BroadcastScene {
-            stream_stride: Wide::splat(stride),
-            last_stream: Wide::splat(stride.wrapping_mul(prepared.settings.max_depth - 1)),
+            last_bounce: Wide::splat(prepared.settings.max_depth - 1),
             opaque: numbered(&prepared.opaque, 0),
             two_root: numbered(listed, prepared.opaque.len()),
             camera: prepared.camera.map(Wide::splat),

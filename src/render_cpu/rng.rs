@@ -8,9 +8,9 @@
 //!
 //! Twin: shaders/rng.wgsl
 
-use super::lanes::{Lanes, Mask, Unsigned};
+use super::lanes::{Lanes, Unsigned};
 use crate::job::render::{RenderSettings, SamplerKind};
-use crate::kernel::sampling::{FIRST_REARRANGEMENT, HalfKey, SECOND_REARRANGEMENT, stream_stride};
+use crate::kernel::sampling::{HalfKey, LAST_TOGETHER, REARRANGEMENT};
 
 /// Hashes 32 bits to 32 bits; a bijection: [`crate::kernel::sampling::mix32`].
 #[inline(always)]
@@ -70,7 +70,7 @@ pub fn sobol_pair<L: Lanes>(l: L, index: L::U, rearrangement: L::U) -> [L::U; 2]
     [u, pascal(l, u)]
 }
 
-/// The stream of a pixel's camera rays: 0 for the sampler that hashes the pixel itself.
+/// The key that separates a pixel's scramblings: 0 for the sampler that hashes the pixel itself.
 #[inline(always)]
 pub fn sampler_key<L: Lanes>(l: L, half_key: HalfKey, pixel: L::U) -> L::U {
     match half_key.bits() {
@@ -80,8 +80,8 @@ pub fn sampler_key<L: Lanes>(l: L, half_key: HalfKey, pixel: L::U) -> L::U {
 }
 
 /// Two pairs of numbers for a path's next ray; the second pair, which matters only `with_lens`, is the point in the pixel
-/// of a camera ray. `counter` selects the sample, `key` the pixel and half, and `stream` the ray too: see
-/// [`crate::kernel::sampling::stream_stride`].
+/// of a camera ray. `counter` selects the sample, `key` the pixel and half, and `stream`, which is `key` plus the number of
+/// bounces so far, the ray too.
 #[inline(always)]
 pub fn numbers<L: Lanes>(
     l: L,
@@ -98,16 +98,12 @@ pub fn numbers<L: Lanes>(
             [[a, b], [c, d]]
         }
         SamplerKind::Sobol => {
-            let stride = stream_stride(SamplerKind::Sobol);
-            let is_first = stream.eq(key + l.splat_u(stride));
-            let is_second = stream.eq(key + l.splat_u(stride.wrapping_mul(2)));
-            let stream = (is_first | is_second).select(key, stream);
-            let index = laine_karras(l, counter, mix32(l, stream));
-            let second_rearrangement = l.splat_u(SECOND_REARRANGEMENT);
-            let rearrangement =
-                is_first.select(l.splat_u(FIRST_REARRANGEMENT), l.keep(is_second, second_rearrangement));
-            let first = sobol_pair(l, index, rearrangement);
-            let second = if with_lens { sobol_pair(l, index, second_rearrangement) } else { first };
+            let bounce = stream - key;
+            let shared = stream - bounce.min(l.splat_u(LAST_TOGETHER));
+            let index = laine_karras(l, counter, mix32(l, shared));
+            let first = sobol_pair(l, index, bounce * l.splat_u(REARRANGEMENT));
+            let pixel_rearrangement = l.splat_u(LAST_TOGETHER.wrapping_mul(REARRANGEMENT));
+            let second = if with_lens { sobol_pair(l, index, pixel_rearrangement) } else { first };
             [first, second]
         }
     }

@@ -74,7 +74,7 @@ pub struct LaneBlocks<L: Lanes> {
     pub step: L::U,
     /// The counter after the block's last sample.
     pub end: L::U,
-    /// The sampler's stream for the camera ray.
+    /// The sampler's key, which separates pixels and halves.
     pub key: L::U,
     /// `x | y << 16`.
     pub pixel: L::U,

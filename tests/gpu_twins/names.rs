@@ -25,7 +25,7 @@ const TWINS: [Twins; 8] = [
             "path/records",
         ],
         only_in_shader: "take_block iterations_over_lists",
-        only_in_rust: "continue_paths nothing next_sample next_stream last_stream of unused with_length2_or idle \
+        only_in_rust: "continue_paths nothing next_sample of unused with_length2_or idle \
                        is_small load is_permuted number vector",
     },
     Twins { shader: "rules", rust: &["path/rules"], only_in_shader: "", only_in_rust: "book_hit_point" },
@@ -43,7 +43,7 @@ const TWINS: [Twins; 8] = [
         only_in_shader: "slope_of hit_bits planes_at four_hits hits_of in_order",
         only_in_rust: "misses_box near_children",
     },
-    Twins { shader: "rng", rust: &["rng"], only_in_shader: "stream_of pixel_key", only_in_rust: "" },
+    Twins { shader: "rng", rust: &["rng"], only_in_shader: "pixel_key", only_in_rust: "" },
     Twins {
         shader: "lanes",
         rust: &["lanes/mod"],

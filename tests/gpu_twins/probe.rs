@@ -11,7 +11,7 @@ pub const PROBE_STRIDE: usize = 18;
 pub enum Probe {
     /// `pcg4d`.
     Pcg4d,
-    /// `pixel_key`, `stream_of`, `lens_stream_of` and `sobol_pair`.
+    /// `pixel_key` and `numbers`.
     Sobol,
     /// `unit_float` and `sin_cos_turns`.
     SinCos,

@@ -5,7 +5,7 @@ use crate::oracle::{self, laine_karras, pascal, pixel_key, sin_cos_turns, sobol_
 use proptest::prelude::*;
 use std::collections::HashSet;
 use weekender::job::render::{RenderSettings, SAMPLE_LIMIT, SamplerKind};
-use weekender::kernel::sampling::{GOLDEN_RATIO, SampleBlock, mix32, pcg4d};
+use weekender::kernel::sampling::{SampleBlock, mix32, pcg4d};
 use weekender::render_cpu::lanes::{Double, Lanes, MAX_LANES, Reference, Scalar, Single, Wide, unit_float};
 use weekender::render_cpu::rng;
 
@@ -125,8 +125,8 @@ fn assert_twins<L: Lanes>(l: L) {
             counters[i] = (index(i) / 2).reverse_bits();
         }
         let (keys, counters) = (l.load_u(&Wide(keys)), l.load_u(&Wide(counters)));
-        let stream = keys + l.splat_u(bounce.wrapping_mul(GOLDEN_RATIO));
-        let found = rng::numbers(l, &settings, l.load_u(&Wide(a)), counters, keys, stream, true);
+        let found =
+            rng::numbers(l, &settings, l.load_u(&Wide(a)), counters, keys, keys + l.splat_u(bounce), true);
         for (which, found) in found.into_iter().flatten().enumerate() {
             same(found, "numbers", &|i| numbers(&settings, pixel(i), index(i), bounce)[which]);
         }

@@ -1,8 +1,6 @@
 //! The numbers of a sample in plain scalar code: the oracle for all lane widths and the GPU.
 
-use weekender::kernel::sampling::{
-    FIRST_REARRANGEMENT, GOLDEN_RATIO, SECOND_REARRANGEMENT, mix32, sine_coefficients,
-};
+use weekender::kernel::sampling::{GOLDEN_RATIO, REARRANGEMENT, mix32, sine_coefficients};
 
 /// The key that separates the Sobol scramblings of pixels, halves and seeds.
 pub fn pixel_key(seed: u32, half: u32, pixel: u32) -> u32 {
@@ -40,15 +38,10 @@ pub fn pascal(u: u32) -> u32 {
 /// The Sobol numbers of ray `bounce` of the sample with the reversed index `counter`. The first three rays share a
 /// shuffle of the index and differ by a rearrangement, as do the lens and the point in the pixel.
 pub fn sobol_numbers(key: u32, counter: u32, bounce: u32) -> [u32; 4] {
-    let (stream, rearrangement) = match bounce {
-        0 => (key, 0),
-        1 => (key, FIRST_REARRANGEMENT),
-        2 => (key, SECOND_REARRANGEMENT),
-        _ => (key.wrapping_add(bounce.wrapping_mul(GOLDEN_RATIO)), 0),
-    };
+    let stream = if bounce <= 2 { key } else { key.wrapping_add(bounce - 2) };
     let index = laine_karras(counter, mix32(stream));
-    let rearranged = |by: u32| index ^ index.wrapping_mul(by);
-    let [first, second] = [rearrangement, SECOND_REARRANGEMENT].map(rearranged);
+    let rearranged = |times: u32| index ^ index.wrapping_mul(times.wrapping_mul(REARRANGEMENT));
+    let [first, second] = [bounce, 2].map(rearranged);
     [first, pascal(first), second, pascal(second)]
 }
 

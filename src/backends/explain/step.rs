@@ -2,7 +2,7 @@
 
 use crate::job::render::{RenderJob, RenderSettings};
 use crate::kernel::path_record::PathRecord;
-use crate::kernel::sampling::{HalfKey, SampleBlock, stream_stride};
+use crate::kernel::sampling::{HalfKey, SampleBlock};
 use crate::render_cpu::lanes::{Scalar, Word, unit_float};
 use crate::render_cpu::rng;
 use crate::scene::{Look, Material, Sphere};
@@ -106,9 +106,8 @@ fn coin(settings: &RenderSettings, pixel: u32, index: u64, ray: u32) -> f64 {
     let (lane, half_count) = (Scalar::<false>, settings.half_count() as u64);
     let (half, first) = ((index % half_count) as u32, (index / half_count) as u32);
     let (counter, _) = SampleBlock { half, first, count: 1 }.counter(settings);
-    let camera_stream = rng::sampler_key(lane, HalfKey::new(settings, half), Word(pixel));
-    let stream = camera_stream + Word(stream_stride(settings.sampler).wrapping_mul(ray));
-    let numbers = rng::numbers(lane, settings, Word(pixel), Word(counter), camera_stream, stream, false);
+    let key = rng::sampler_key(lane, HalfKey::new(settings, half), Word(pixel));
+    let numbers = rng::numbers(lane, settings, Word(pixel), Word(counter), key, key + Word(ray), false);
     let [[first, _], _] = numbers;
     f64::from(unit_float(lane, first).0)
 }

@@ -3,7 +3,6 @@
 use super::packet::Packet;
 use crate::kernel::parts;
 use crate::prepared::PreparedScene;
-use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::lanes::{Lanes, unit_float};
 use crate::render_cpu::rng::numbers;
 
@@ -39,16 +38,4 @@ pub(super) fn draw<L: Lanes, const PARTS: u32>(
 #[inline(always)]
 pub(super) fn has_lens<L: Lanes, const PARTS: u32>(prepared: &PreparedScene<L::Real>) -> bool {
     PARTS & parts::LENS != 0 && prepared.camera.tau > L::Real::default()
-}
-
-/// The sampler's stream for a path's next ray.
-#[inline(always)]
-pub(super) fn next_stream<L: Lanes>(l: L, broadcast: &BroadcastScene<L::Real>, packet: &Packet<L>) -> L::U {
-    packet.stream + l.load_u(&broadcast.stream_stride)
-}
-
-/// The sampler's stream for a path's last ray.
-#[inline(always)]
-pub(super) fn last_stream<L: Lanes>(l: L, broadcast: &BroadcastScene<L::Real>, packet: &Packet<L>) -> L::U {
-    packet.blocks.key + l.load_u(&broadcast.last_stream)
 }

@@ -12,7 +12,7 @@ pub(super) struct Packet<L: Lanes> {
     /// Squared sine of the angle between a ray inside steep glass and the normal where it starts; it is the same where
     /// the ray ends.
     pub sine2: L::F,
-    /// The sampler's stream, which selects the ray of the sample.
+    /// The sampler's stream: its key plus the number of bounces so far.
     pub stream: L::U,
     pub screen: [L::F; 2],
     /// Lanes whose path was absorbed, or which wait to be refilled. They end at the next step, add nothing and are not

@@ -1,6 +1,6 @@
 //! The second phase: adds light, ends paths, and finds the hit points and random numbers of the next rays.
 
-use super::draw::{Draw, draw, last_stream, next_stream};
+use super::draw::{Draw, draw};
 use super::intersect::hit_point;
 use super::packet::{Packet, pixel_position};
 use super::records::{ShadingRecords, is_permuted};
@@ -80,10 +80,9 @@ pub(super) fn shade<L: Lanes, const PARTS: u32>(
     let prepared = &broadcast.prepared;
     let one = l.constant(1.0);
 
-    // End paths that miss, that were absorbed, or that have all their rays. The stream tells a path's last ray from the
-    // others, so there is no counter as on the GPU.
+    // End paths that miss, that were absorbed, or that have all their rays.
     let miss = packet.nearest.sphere.eq(l.splat_u(NONE));
-    let is_last = packet.stream.eq(last_stream(l, broadcast, packet));
+    let is_last = packet.stream.eq(packet.blocks.key + l.load_u(&broadcast.last_bounce));
     let mut ended = miss | is_last | packet.absorbed;
 
     // Add the light of the sky where rays miss, or what the stage shows in its place.
@@ -122,7 +121,7 @@ pub(super) fn shade<L: Lanes, const PARTS: u32>(
 
     // Start the next sample where a path has ended.
     shaded.waiting = next_sample(l, broadcast, packet, work, ended, refills);
-    packet.stream = ended.select(packet.blocks.key, next_stream(l, broadcast, packet));
+    packet.stream = ended.select(packet.blocks.key, packet.stream + l.splat_u(1));
     shaded.ended = ended;
 
     // Draw the random numbers of the next rays.
