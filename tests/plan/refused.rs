@@ -40,9 +40,9 @@ fn changed_plan_or_other_version_is_refused() {
     let [good, good_scene] = [&manifest, &scene].map(|path| fs::read_to_string(path).unwrap());
     for (from, to, parts) in [
         (
-            "\"sample_version\": 4",
+            "\"sample_version\": 5",
             "\"sample_version\": 3",
-            &["version 3", "version 4", "another directory"][..],
+            &["version 3", "version 5", "another directory"][..],
         ),
         ("\"plan_version\": 1", "\"plan_version\": 7", &["version 7", "version 1"]),
         ("\"block\"", "\"blocks\"", &["plan.json is not a plan"]),
