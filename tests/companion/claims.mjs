@@ -27,11 +27,22 @@ export class Picture {
     return this.mean(light, part);
   }
 
-  // The greatest step of light from one row of a part to the next.
-  steepest([left, top, right, bottom]) {
+  // The means of the rows of a part.
+  rows(of, [left, top, right, bottom]) {
     const rows = [];
-    for (let y = Math.round(top * this.height); y < Math.round(bottom * this.height); y++) rows.push(this.light([left, y / this.height, right, (y + 1) / this.height]));
+    for (let y = Math.round(top * this.height); y < Math.round(bottom * this.height); y++) rows.push(this.mean(of, [left, y / this.height, right, (y + 1) / this.height]));
+    return rows;
+  }
+
+  // The greatest step of light from one row of a part to the next.
+  steepest(part) {
+    const rows = this.rows(light, part);
     return Math.max(...rows.slice(1).map((row, i) => Math.abs(row - rows[i])));
+  }
+
+  // The blue of the bluest row of a part: how sharp the hollow ball's rim is, before ground without blue.
+  rim() {
+    return Math.max(...this.rows(([, , blue]) => blue, ARC));
   }
 
   difference(other, part) {
@@ -50,7 +61,7 @@ const isGround = ([r, g, b]) => g > 1.25 * b && r > 1.1 * b;
 const isBlue = ([r, , b]) => b > 1.5 * r;
 const isSky = ([r, g, b]) => b > 1.05 * r && g > 150;
 const UNDER = [0.45, 0.68, 0.55, 0.74], RIM = [0.6, 0.5, 0.74, 0.65], GLASS_TOP = [0.05, 0.28, 0.2, 0.38], MIRROR = [0.08, 0.42, 0.18, 0.7];
-const BALL_EDGE = [0.76, 0.45, 0.84, 0.85], ARC = [0.05, 0.35, 0.12, 0.7], FRONT = [0.1, 0.8, 0.9, 1], FOCUS = [0.48, 0.3, 0.62, 0.55];
+const ARC = [0.06, 0.38, 0.12, 0.6], FRONT = [0.1, 0.8, 0.9, 1], FOCUS = [0.48, 0.3, 0.62, 0.55];
 const MIDDLE = [0.42, 0.35, 0.58, 0.65];
 
 export const claims = [
@@ -84,8 +95,8 @@ export const claims = [
   ["fov-narrow?vfov=5", "where they touch", (now) => now.at(60, 135)[2] > 80 && now.at(60, 135)[2] < 220 && now.mean(isSky) < 0.05 && now.at(420, 135)[0] > 80 && now.at(420, 135)[2] < 30],
   ["view-close?vfov=8", "the blue ball alone fills most", (now, was) => now.mean(isBlue) > 0.7 && was.mean(isBlue) < 0.5],
   ["defocus?defocus=0", "the second panel is the first", (now, _, usual) => below(now.difference(usual.get("view-close")), 2)],
-  ["defocus?defocus=20", "the other two balls blur twice as much", (now, was) => below(now.steepest(BALL_EDGE) / was.steepest(BALL_EDGE), 0.95)],
-  ["defocus?focus=2.9", "focus on the hollow ball", (now, was) => now.difference(was, ARC) > 3 || now.difference(was, ARC)],
+  ["defocus?defocus=20", "the other two balls blur twice as much", (now, was) => below(now.rim() / was.rim(), 0.95)],
+  ["defocus?focus=2.9", "focus on the hollow ball", (now, was) => now.rim() / was.rim() > 1.03 || now.rim() / was.rim()],
   ["book?defocus=0", "the front of the crowd is sharp", (now, was) => now.difference(was, FRONT) > 4 || now.difference(was, FRONT)],
   ["book?defocus=0", "a pinhole camera", (now, was) => now.difference(was, FRONT) > 4 || now.difference(was, FRONT)],
   ["book?depth=2", "lose most of what they show", (now, was) => below(now.light(FOCUS) / was.light(FOCUS), 0.8)],
