@@ -272,7 +272,7 @@ fn trace<L: Lanes<Real = f32>>(l: L, refill: bool, scene: &BroadcastScene<f32>, 
         if lit != 0 {
             add_light(l, scene, &rays, throughput, lit, &pixels, work);
         }
-        let is_last = stream.eq(key + l.load_u(&scene.last_stream));
+        let is_last = stream.eq(key + l.load_u(&scene.last_bounce));
         busy &= !(miss | is_last).bits();
 
         // New paths: for every idle lane, or once all lanes are idle.
@@ -297,7 +297,7 @@ fn trace<L: Lanes<Real = f32>>(l: L, refill: bool, scene: &BroadcastScene<f32>, 
             corner = screen(l, &scene.camera, position[0], position[1]);
         }
         let new = l.mask(started);
-        stream = new.select(key, stream + l.load_u(&scene.stream_stride));
+        stream = new.select(key, stream + l.splat_u(1));
         let [drawn, _] = numbers(l, settings, pixel, counter, key, stream, false);
         let [u0, u1] = [unit_float(l, drawn[0]), unit_float(l, drawn[1])];
 

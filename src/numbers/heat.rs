@@ -29,6 +29,9 @@ impl HeatScale {
     pub const DIFFERENCE: HeatScale =
         HeatScale { title: "|difference|, linear radiance", ..HeatScale::ERROR };
 
+    /// Differences of two pictures as they are displayed, from 0 to 1.
+    pub const DISPLAYED: HeatScale = HeatScale { title: "|difference|, 0 to 1", ..HeatScale::ERROR };
+
     pub const RAYS: HeatScale = HeatScale { title: "rays per path", limits: [1.0, 32.0], parts: 5 };
 
     pub const OCCUPANCY: HeatScale =

@@ -218,7 +218,7 @@ impl Ask for Window {
     }
 
     fn checked(&self) -> Option<&str> {
-        self.tools.check.shown.as_ref().map(|(answer, _)| answer.title.as_str())
+        self.tools.check.shown.as_ref().map(|checked| checked.answer.title.as_str())
     }
 
     fn is_paused(&self) -> bool {

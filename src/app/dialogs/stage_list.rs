@@ -2,8 +2,8 @@
 
 use super::outcome::Outcome;
 use crate::app::commands::{Command, PanelContext, Snapshot};
-use crate::app::toolkit::Finder;
 use crate::app::toolkit::widgets::{caption, choice, tip};
+use crate::app::toolkit::{Finder, theme};
 use crate::measure::stress::shown_cases;
 use crate::stages::Stage;
 use eframe::egui::text::LayoutJob;
@@ -81,7 +81,7 @@ pub fn ui(finder: &mut Finder, ui: &mut Ui, height: f32, cx: &PanelContext) -> O
             heading = heading_of(*row);
             caption(ui, &format!("  {heading}"));
         }
-        row_ui(ui, *row, is_chosen)
+        row_ui(ui, *row, is_chosen, &cx.snapshot)
     };
     let (found, run) = finder.ui(ui, words, height, found, draw);
     run.map_or(Outcome::Stay, |run| {
@@ -90,12 +90,15 @@ pub fn ui(finder: &mut Finder, ui: &mut Ui, height: f32, cx: &PanelContext) -> O
     })
 }
 
-fn row_ui(ui: &mut Ui, row: Command, is_chosen: bool) -> Response {
+fn row_ui(ui: &mut Ui, row: Command, is_chosen: bool, snapshot: &Snapshot) -> Response {
+    let is_done = matches!(row, Command::Stage(stage) if snapshot.model.remembered.done.contains(stage.id));
     let button = match row {
         Command::Stage(stage) if let Some(picture) = thumbnail(ui.ctx(), stage) => {
             let mut words = LayoutJob::default();
-            let number = RichText::new(format!("{}\n", stage.section)).small().weak();
-            for text in [number, RichText::new(stage.title).strong()] {
+            let number = RichText::new(stage.section).small().weak();
+            let done = RichText::new(if is_done { "  ✔ yours is right\n" } else { "\n" });
+            let done = done.small().color(theme::colours(ui).good);
+            for text in [number, done, RichText::new(stage.title).strong()] {
                 text.append_to(&mut words, ui.style(), FontSelection::Default, Align::Center);
             }
             let picture = Image::new((picture.id(), PICTURE));

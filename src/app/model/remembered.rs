@@ -5,6 +5,7 @@ use crate::scene::Camera;
 use eframe::Storage;
 use eframe::egui::ThemePreference;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// How many files are remembered.
@@ -66,6 +67,10 @@ pub struct Remembered {
     pub bookmarks: Vec<Bookmark>,
     /// The files that were opened or saved last, newest first.
     pub recent: Vec<PathBuf>,
+    /// The picture of another program that is being checked.
+    pub mine: Option<PathBuf>,
+    /// The ids of the stages of which such a picture was right.
+    pub done: BTreeSet<String>,
     /// The card with the first steps was closed: it does not reopen automatically.
     pub is_greeted: bool,
 }
@@ -85,6 +90,8 @@ impl Default for Remembered {
             threads: None,
             bookmarks: Vec::new(),
             recent: Vec::new(),
+            mine: None,
+            done: BTreeSet::new(),
             is_greeted: false,
         }
     }

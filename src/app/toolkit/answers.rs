@@ -126,6 +126,11 @@ pub struct Answer<T> {
 }
 
 impl<T> Answer<T> {
+    /// Whether the slot of this answer still exists, if no other answer to it is open.
+    pub fn is_wanted(&self) -> bool {
+        self.token.as_ref().is_some_and(|token| Arc::strong_count(token) > 1)
+    }
+
     /// Gives the answer, or one of several.
     pub fn give(&self, value: Result<T, String>) {
         self.is_promised.set(false);

@@ -1,6 +1,7 @@
 //! Overlays of a picture: titles, and the divider of a wipe.
 
 use super::theme;
+use crate::numbers::heat::{HeatScale, colour_at};
 use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
     self, Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, TextStyle, TextureId, Ui, pos2,
@@ -70,4 +71,28 @@ pub fn plate(ui: &Ui, painter: &Painter, at: Pos2, anchor: Align2, text: &str, w
     };
     painter.rect_filled(rect, CornerRadius::same(4), fill);
     painter.galley(rect.center() - 0.5 * galley.size(), galley, Color32::WHITE);
+}
+
+/// Draws the legend of a heat map in the lower left corner of `rect`.
+pub fn legend(ui: &Ui, painter: &Painter, rect: Rect, scale: &HeatScale) {
+    const STEPS: usize = 64;
+    let (font, visuals) = (TextStyle::Small.resolve(ui.style()), ui.visuals());
+    // The legend is as large as its letters.
+    let em = font.size;
+    let size = vec2(20.0 * em, 5.0 * em);
+    let plate = Rect::from_min_size(rect.left_bottom() + vec2(CORNER, -size.y - CORNER), size);
+    painter.rect_filled(plate, CornerRadius::same(4), visuals.panel_fill.gamma_multiply(0.9));
+    let title = plate.min + vec2(2.0, 0.5) * em;
+    painter.text(title, Align2::LEFT_TOP, scale.title, font.clone(), visuals.weak_text_color());
+    let bar = Rect::from_min_size(title + vec2(0.0, 1.5 * em), vec2(size.x - 4.0 * em, em));
+    for step in 0..STEPS {
+        let [red, green, blue] = colour_at((step as f64 + 0.5) / STEPS as f64);
+        let [from, to] = [step, step + 1].map(|step| bar.left() + bar.width() * step as f32 / STEPS as f32);
+        let part = Rect::from_x_y_ranges(from..=to + 0.5, bar.y_range());
+        painter.rect_filled(part, 0.0, Color32::from_rgb(red, green, blue));
+    }
+    for (value, name) in scale.marks() {
+        let at = pos2(bar.left() + bar.width() * scale.place(value) as f32, bar.bottom() + 0.2 * em);
+        painter.text(at, Align2::CENTER_TOP, name, font.clone(), visuals.text_color());
+    }
 }

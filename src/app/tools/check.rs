@@ -8,19 +8,45 @@ use crate::app::panels::stage_panel::paragraph;
 use crate::app::toolkit::widgets::{
     About, Header, entry, fold, hint, list, panel_line, primary, small, switch, tip,
 };
-use crate::app::toolkit::{Answers, Texture, overlay, theme};
-use crate::pictures::check::{Answer, AnswerKind, Damage, Mine, judge, pictures};
+use crate::app::toolkit::{Answers, Texture, caught, overlay, theme};
+use crate::numbers::heat::HeatScale;
+use crate::pictures::check::{
+    Answer, AnswerKind, Damage, Finding, Mine, POLL_INTERVAL, Watched, judge_again, pictures, stages,
+};
 use crate::stages::Stage;
 use eframe::egui::{
-    self, Align2, Color32, Label, Rect, RichText, Sense, TextureOptions, Ui, Vec2, WidgetInfo, vec2,
+    self, Align2, Color32, Label, Rect, RichText, Sense, Stroke, StrokeKind, TextureOptions, Ui, Vec2,
+    WidgetInfo, vec2,
 };
 use std::path::{Path, PathBuf};
+use std::thread::{Builder, sleep};
 
-/// A size, and mine, ours and the difference, if the picture could be compared.
-type Compared = Option<([u32; 2], [Texture; 3])>;
+/// What was found in a picture as its file then was.
+pub struct Checked {
+    pub answer: Answer,
+    /// Rows of the file so far, and of the picture.
+    rows: [u32; 2],
+    /// The size, and mine, ours and the difference, if the picture could be compared.
+    compared: Option<([u32; 2], [Texture; 3])>,
+}
 
-/// A picture that was checked.
-type Checked = (Answer, Compared);
+impl Checked {
+    fn of(found: anyhow::Result<(Mine, Finding)>) -> Self {
+        match found {
+            Ok((mine, finding)) => {
+                let size = [mine.width, mine.height];
+                let views =
+                    pictures(&mine, &finding).map(|rgb8| Texture::new(size, rgb8.as_flattened(), None));
+                let rows = [mine.rows, mine.height];
+                Checked { answer: finding.answer(&mine), rows, compared: Some((size, views)) }
+            }
+            Err(reason) => Checked { answer: Answer::cannot_check(&reason), rows: [0; 2], compared: None },
+        }
+    }
+}
+
+/// How many of the places that differ most are marked.
+const MARKS: usize = 5;
 
 /// The picture in the middle of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -32,16 +58,22 @@ enum Side {
     Difference,
 }
 
-/// The check of a picture, made by a background thread.
+/// The check of a picture, which a background thread repeats whenever the file has changed.
 #[derive(Default)]
 pub struct Check {
-    /// The picture that is checked or was checked last.
+    /// The picture that is checked.
     path: Option<PathBuf>,
+    /// The stage that the user has chosen for it.
+    chosen: Option<&'static Stage>,
     pub shown: Option<Checked>,
     /// Something is to be shown that was not there before.
     has_news: bool,
+    /// The picture of the last window was looked for.
+    has_resumed: bool,
     side: Side,
     divider: f32,
+    /// The number of the place that is shown enlarged.
+    place: Option<usize>,
     /// The pixel under the pointer, and whether it is one of the user's picture.
     hovered: Option<[u32; 2]>,
     is_over_yours: bool,
@@ -49,36 +81,53 @@ pub struct Check {
 }
 
 impl Check {
-    /// Checks a picture; it is one of `stage` if that is known.
+    /// Checks a picture until it is closed; it is one of `stage` if that is known.
     pub fn begin(&mut self, context: &egui::Context, path: &Path, stage: Option<&'static Stage>) {
         self.close();
-        let checked = path.to_owned();
-        let work = move || {
-            let found = Mine::read(&checked)
-                .and_then(|mine| judge(&mine, stage, |_| {}).map(|finding| (mine, finding)));
-            let (mine, finding) = match found {
-                Ok(found) => found,
-                Err(error) => return Ok((Answer::cannot_check(&error), None)),
-            };
-            let size = [mine.width, mine.height];
-            let views = pictures(&mine, &finding).map(|rgb8| Texture::new(size, rgb8.as_flattened(), None));
-            Ok((finding.answer(&mine), Some((size, views))))
+        let (answer, mut watched) = (self.answers.promise(context), Watched::new(path));
+        let watch = move || {
+            let outcome = caught(|| {
+                while answer.is_wanted() {
+                    let found = watched.judged(|mine, last| judge_again(mine, stage, last, |_| {}));
+                    if let Some(found) = found {
+                        answer.give(Ok(Checked::of(found)));
+                    }
+                    sleep(POLL_INTERVAL);
+                }
+            });
+            if let Err(reason) = outcome {
+                answer.give(Err(reason));
+            }
         };
-        self.answers.ask("check", context, work);
-        (self.path, self.has_news) = (Some(path.to_owned()), true);
-        (self.side, self.divider, self.hovered) = (Side::Wipe, 0.5, None);
+        // Without a thread, the answer is dropped, which gives an error.
+        let _ = Builder::new().name("check".to_owned()).spawn(watch);
+        (self.path, self.chosen, self.has_news) = (Some(path.to_owned()), stage, true);
+        (self.side, self.divider, self.place, self.hovered) = (Side::Wipe, 0.5, None, None);
     }
 
-    /// Takes the answer, and opens its tab when there is something new in it.
-    pub fn follow(&mut self, remembered: &mut Remembered) {
-        if let Some(outcome) = self.answers.take() {
-            let failed = |reason| (Answer::cannot_check(&anyhow::Error::msg(reason)), None);
-            let (answer, pictures) = outcome.unwrap_or_else(failed);
-            if let Some(path) = pictures.as_ref().and(self.path.as_ref()) {
+    /// Takes answers, and opens their tab when they are about another picture. Resumes the check of the last window.
+    pub fn follow(&mut self, context: &egui::Context, remembered: &mut Remembered) {
+        if !std::mem::replace(&mut self.has_resumed, true)
+            && self.path.is_none()
+            && let Some(path) = remembered.mine.take().filter(|path| path.exists())
+        {
+            self.begin(context, &path, None);
+            self.has_news = false;
+        }
+        while let Some(outcome) = self.answers.take() {
+            let checked = outcome.unwrap_or_else(|reason| Checked::of(Err(anyhow::Error::msg(reason))));
+            let is_first = self.shown.is_none();
+            if let Some(path) = self.path.as_ref().filter(|_| is_first && checked.compared.is_some()) {
                 remembered.note_recent(path);
             }
-            self.shown = Some((answer, pictures));
-            self.has_news = true;
+            if let Some(stage) = checked.answer.stage.filter(|_| checked.answer.kind == AnswerKind::Right) {
+                remembered.done.insert(stage.id.to_owned());
+            }
+            self.shown = Some(checked);
+        }
+        // A path that is not Unicode could not be stored.
+        if remembered.mine != self.path {
+            remembered.mine = self.path.clone().filter(|path| path.to_str().is_some());
         }
         if std::mem::take(&mut self.has_news) {
             (remembered.has_info, remembered.tab) = (true, Tab::Check);
@@ -87,8 +136,7 @@ impl Check {
 
     /// A description of the checked picture.
     pub fn words(&self) -> Option<String> {
-        let (_, pictures) = self.shown.as_ref()?;
-        let ([width, height], _) = pictures.as_ref()?;
+        let ([width, height], _) = self.shown.as_ref()?.compared.as_ref()?;
         Some(format!("Checked {}, {width} × {height} pixels", self.name()))
     }
 
@@ -100,7 +148,7 @@ impl Check {
     /// Closes the answer. One that is awaited is not shown.
     pub fn close(&mut self) {
         self.answers = Answers::default();
-        (self.path, self.shown) = (None, None);
+        (self.path, self.chosen, self.shown) = (None, None, None);
     }
 
     fn name(&self) -> String {
@@ -111,7 +159,7 @@ impl Check {
     /// Draws the answer, or that it is awaited.
     pub fn ui(&mut self, ui: &mut Ui, cx: &PanelContext) {
         let name = self.name();
-        let Some((answer, pictures)) = &self.shown else {
+        let Some(Checked { answer, rows: [rows, height], compared }) = &self.shown else {
             scrolling(ui, |ui| {
                 hint(ui, &format!("Comparing {name} with every stage and every known mistake…"));
                 ui.horizontal(|ui| {
@@ -123,24 +171,24 @@ impl Check {
             });
             return;
         };
-        let (mut is_again, mut is_closed, mut of_section) = (false, false, None);
+        let (mut is_closed, mut of_section) = (false, None);
         crate::app::panels::right::foot(ui, |ui| {
             ui.horizontal(|ui| {
                 ui.set_height(32.0);
-                is_again = ui.button("Check again").clicked();
                 is_closed = ui.button("Close").clicked();
                 if ui.button("Another picture…").clicked() {
                     cx.send(Command::CheckPicture);
                 }
             });
-            numbers(ui, self.hovered, pictures.as_ref(), self.is_over_yours, self.side);
+            numbers(ui, self.hovered, compared.as_ref(), self.is_over_yours, self.side);
         });
         scrolling(ui, |ui| {
             verdict(ui, answer);
-            if let Some(stage) = answer.stage {
-                ui.add_space(4.0);
-                let text = format!("Your picture shows stage {} {}.", stage.section, stage.title);
-                ui.add(Label::new(RichText::new(text).line_height(Some(20.0))).wrap());
+            if rows < height {
+                hint(
+                    ui,
+                    &format!("This is about the first {rows} of {height} rows. The others are awaited."),
+                );
             }
             if let Some(remedy) = &answer.remedy {
                 paragraph(ui, "What to change", &format!("{remedy}."));
@@ -149,8 +197,9 @@ impl Check {
                 paragraph(ui, "The file, too", &format!("{title}: {remedy}."));
             }
             links(ui, answer, cx);
-            of_section = section(ui, answer);
-            if pictures.is_some() {
+            of_section = section(ui, answer, self.chosen);
+            hint(ui, &format!("{name} is checked again whenever it changes."));
+            if compared.is_some() {
                 ui.add_space(4.0);
                 small(ui, "Compare");
                 let sides = [
@@ -160,6 +209,16 @@ impl Check {
                     (Side::Difference, About::new("Difference", "Where the two differ, and by how much")),
                 ];
                 self.side = switch(ui, 0.0, self.side, &sides).unwrap_or(self.side);
+                let next = self.place.map_or(0, |place| (place + 1) % answer.places.len().clamp(1, MARKS));
+                let words = if self.place.is_none() { "Show where" } else { "Next place" };
+                ui.horizontal(|ui| {
+                    if !answer.places.is_empty() && ui.button(words).clicked() {
+                        (self.place, self.divider) = (Some(next), f32::NAN);
+                    }
+                    if self.place.is_some() && ui.button("Whole picture").clicked() {
+                        (self.place, self.divider) = (None, 0.5);
+                    }
+                });
                 if answer.evidence.is_empty() {
                     return;
                 }
@@ -172,8 +231,8 @@ impl Check {
                 });
             }
         });
-        if let Some(path) = self.path.clone().filter(|_| is_again || of_section.is_some()) {
-            self.begin(ui.ctx(), &path, of_section);
+        if let Some((path, stage)) = self.path.clone().zip(of_section) {
+            self.begin(ui.ctx(), &path, stage);
         } else if is_closed {
             self.close();
         }
@@ -181,12 +240,18 @@ impl Check {
 
     /// Draws the two pictures in the middle of the window, in place of the traced one. Returns the room; `None` without pictures.
     pub fn picture(&mut self, ui: &mut Ui) -> Option<Rect> {
-        let (answer, pictures) = self.shown.as_ref()?;
-        let (pixels, [yours, ours, difference]) = pictures.as_ref()?;
+        let Checked { answer, compared, .. } = self.shown.as_ref()?;
+        let (pixels, [yours, ours, difference]) = compared.as_ref()?;
         let room = ui.available_rect_before_wrap();
         let size = vec2(pixels[0] as f32, pixels[1] as f32);
-        let scale = ((room.size() - Vec2::splat(16.0)) / size).min_elem().max(0.0);
-        let rect = Rect::from_center_size(room.center(), size * scale);
+        let fitting = ((room.size() - Vec2::splat(16.0)) / size).min_elem().max(0.0);
+        let place = self.place.and_then(|place| answer.places.get(place));
+        let share = place.map_or(Vec2::splat(0.5), |[x, y]| vec2(*x as f32, *y as f32) / size);
+        let scale = if place.is_some() { (4.0 * fitting).max(8.0) } else { fitting };
+        let rect = Rect::from_min_size(room.center() - share * size * scale, size * scale);
+        if self.divider.is_nan() {
+            self.divider = share.x;
+        }
         let response = ui.allocate_rect(room, Sense::drag());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Your picture and ours"));
         let painter = ui.painter().with_clip_rect(room);
@@ -198,6 +263,7 @@ impl Check {
             Side::Difference => difference,
         };
         painter.image(whole.id(ui.ctx(), options), rect, overlay::WHOLE, Color32::WHITE);
+        let seen = rect.intersect(room);
         let your_title = format!("Yours: {}", self.name());
         let our_title = match answer.stage {
             Some(stage) => format!("Ours: {} {}", stage.section, stage.title),
@@ -211,11 +277,19 @@ impl Check {
                 let left = (yours.id(ui.ctx(), options), rect);
                 overlay::wipe(ui, &painter, rect, self.divider, left, [&your_title, &our_title]);
             }
-            Side::Yours => overlay::title(ui, &painter, rect, Align2::LEFT_TOP, &your_title),
-            Side::Ours => overlay::title(ui, &painter, rect, Align2::RIGHT_TOP, &our_title),
+            Side::Yours => overlay::title(ui, &painter, seen, Align2::LEFT_TOP, &your_title),
+            Side::Ours => overlay::title(ui, &painter, seen, Align2::RIGHT_TOP, &our_title),
             Side::Difference => {
                 let words = format!("Difference: {}", self.name());
-                overlay::title(ui, &painter, rect, Align2::LEFT_TOP, &words);
+                overlay::title(ui, &painter, seen, Align2::LEFT_TOP, &words);
+                overlay::legend(ui, &painter, seen, &HeatScale::DISPLAYED);
+            }
+        }
+        for [x, y] in answer.places.iter().take(MARKS) {
+            let middle = rect.min + vec2(*x as f32, *y as f32) * scale;
+            let mark = Rect::from_center_size(middle, Vec2::splat(10.0 * scale));
+            for (width, colour) in [(3.0, Color32::from_black_alpha(140)), (1.0, Color32::WHITE)] {
+                painter.rect_stroke(mark, 2.0, Stroke::new(width, colour), StrokeKind::Outside);
             }
         }
         if let Some(at) = response.hover_pos().filter(|at| rect.contains(*at)) {
@@ -266,20 +340,27 @@ fn numbers(
     });
 }
 
-/// A list to choose the section in that the picture belongs to. Returns the one that was chosen.
-fn section(ui: &mut Ui, answer: &Answer) -> Option<&'static Stage> {
-    let mut chosen = None;
-    let shown = answer.stage.map_or("unknown", |stage| stage.section);
-    let about = About::new("It is of section", "Checks it again as a picture of the section that you choose");
-    list(ui, about, shown, |ui| {
-        for stage in Stage::walk() {
+/// A list to choose the section in that the picture belongs to. Returns the choice; `None` in it looks for the section.
+fn section(ui: &mut Ui, answer: &Answer, chosen: Option<&'static Stage>) -> Option<Option<&'static Stage>> {
+    let mut choice = None;
+    let shown = match (chosen, answer.stage) {
+        (Some(stage), _) => format!("{} {}", stage.section, stage.title),
+        (None, Some(stage)) => format!("found: {} {}", stage.section, stage.title),
+        (None, None) => "not found".to_owned(),
+    };
+    let about = About::new("Section", "Checks it as a picture of the section that you choose");
+    list(ui, about, &shown, |ui| {
+        if entry(ui, chosen.is_none(), About::new("Find it", "Compares it with all sections")) {
+            choice = Some(None);
+        }
+        for stage in stages() {
             let name = format!("{} {}", stage.section, stage.title);
-            if entry(ui, answer.stage == Some(stage), About::new(&name, "")) {
-                chosen = Some(stage);
+            if entry(ui, chosen == Some(stage), About::new(&name, "")) {
+                choice = Some(Some(stage));
             }
         }
     });
-    chosen
+    choice
 }
 
 /// The verdict, and one sentence.
@@ -300,10 +381,11 @@ fn links(ui: &mut Ui, answer: &Answer, cx: &PanelContext) {
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {
         let next = answer.stage.and_then(Stage::next).filter(|_| answer.kind == AnswerKind::Right);
-        if let Some(next) = next
-            && ui.add(primary(format!("Next: {}", next.section))).clicked()
-        {
-            cx.send(Command::Stage(next));
+        if let Some(next) = next {
+            hint(ui, &format!("Section {} adds: {}.", next.section, next.title));
+            if ui.add(primary(format!("Next: {}", next.section))).clicked() {
+                cx.send(Command::Stage(next));
+            }
         }
         if let Some(section) = &answer.section {
             let stage = section.stage;
@@ -322,49 +404,81 @@ fn links(ui: &mut Ui, answer: &Answer, cx: &PanelContext) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::time::{Duration, Instant, SystemTime};
+
+    /// A file that nobody has changed for a minute.
+    fn old_file(path: &Path, content: &[u8]) {
+        std::fs::write(path, content).unwrap();
+        let file = std::fs::File::options().write(true).open(path).unwrap();
+        file.set_modified(SystemTime::now() - Duration::from_secs(60)).unwrap();
+    }
+
+    fn answered(check: &mut Check, remembered: &mut Remembered) {
+        let context = egui::Context::default();
+        check.shown = None;
+        let begin = Instant::now();
+        while check.shown.is_none() && begin.elapsed() < Duration::from_secs(60) {
+            check.follow(&context, remembered);
+            sleep(Duration::from_millis(5));
+        }
+    }
+
+    /// The tiny picture of the book, as the first lines of its program print it, with this much blue.
+    fn tiny(blue: u8) -> Vec<u8> {
+        let [width, height] = [16_u32, 9];
+        let share = |at: u32, count: u32| (255.999 * f64::from(at) / f64::from(count - 1)) as u8;
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+        let rgb8: Vec<u8> =
+            pixels.flat_map(|[x, y]| [share(x, width), share(y, height), blue * u8::from(x > 2)]).collect();
+        [b"P6\n16 9\n255\n".as_slice(), &rgb8].concat()
+    }
 
     #[test]
     fn files_that_are_not_pictures_get_an_answer() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("notes.txt");
-        std::fs::write(&path, "no picture").unwrap();
-        let (context, mut check) = (egui::Context::default(), Check::default());
-        check.begin(&context, &path, None);
-        let mut remembered = Remembered::default();
-        check.follow(&mut remembered);
+        old_file(&path, b"no picture");
+        let (mut check, mut remembered) = (Check::default(), Remembered::default());
+        check.begin(&egui::Context::default(), &path, None);
+        check.follow(&egui::Context::default(), &mut remembered);
         assert!(check.is_open() && remembered.tab == Tab::Check && check.shown.is_none());
-        let checked = check.answers.wait().unwrap();
-        check.answers.answer(&context).give(checked);
-        check.follow(&mut remembered);
+        answered(&mut check, &mut remembered);
         assert!(remembered.recent.is_empty());
-        let (answer, _) = check.shown.as_ref().unwrap();
+        let Checked { answer, .. } = check.shown.as_ref().unwrap();
         assert_eq!(answer.kind, AnswerKind::CannotCheck);
         assert!(answer.explanation.contains("notes.txt"), "{}", answer.explanation);
     }
 
     #[test]
-    fn an_answer_is_about_the_picture_that_was_checked() {
-        // The tiny picture of the book, as the first lines of its program print it.
-        let [width, height] = [16_u32, 9];
-        let share = |at: u32, count: u32| (255.999 * f64::from(at) / f64::from(count - 1)) as u8;
-        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
-        let rgb8: Vec<u8> = pixels.flat_map(|[x, y]| [share(x, width), share(y, height), 0]).collect();
+    fn a_picture_is_checked_again_when_it_changes_and_in_the_next_window() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("mine.ppm");
-        std::fs::write(&path, [b"P6\n16 9\n255\n".as_slice(), &rgb8].concat()).unwrap();
-        let (context, mut check) = (egui::Context::default(), Check::default());
+        old_file(&path, &tiny(0));
+        let (context, mut check, mut remembered) =
+            (egui::Context::default(), Check::default(), Remembered::default());
         let stage = Stage::find("ppm-tiny").unwrap();
         check.begin(&context, &path, Some(stage));
-        let checked = check.answers.wait().unwrap();
-        let (size, views) = checked.as_ref().unwrap().1.as_ref().unwrap();
+        answered(&mut check, &mut remembered);
+        assert_eq!((&remembered.recent, &remembered.mine), (&vec![path.clone()], &Some(path.clone())));
+        assert!(remembered.done.contains("ppm-tiny"));
+        let Checked { answer, compared, .. } = check.shown.as_ref().unwrap();
+        assert_eq!((answer.stage, answer.kind), (Some(stage), AnswerKind::Right));
+        let (size, views) = compared.as_ref().unwrap();
         assert!(
-            *size == [16, 9] && views[0].colour([3, 2]) == Some([rgb8[105], rgb8[106], rgb8[107]]),
+            *size == [16, 9] && views[0].colour([3, 2]) == Some([51, 63, 0]),
             "the first picture is the reader's"
         );
-        check.answers.answer(&context).give(checked);
-        let mut remembered = Remembered::default();
-        check.follow(&mut remembered);
-        assert_eq!(remembered.recent, [path]);
-        assert_eq!(check.shown.unwrap().0.stage, Some(stage));
+        // The side, the place and the tab stay where they are.
+        (check.side, check.place, remembered.tab) = (Side::Yours, Some(0), Tab::Code);
+        old_file(&path, &tiny(200));
+        answered(&mut check, &mut remembered);
+        assert_ne!(check.shown.as_ref().unwrap().answer.kind, AnswerKind::Right);
+        assert!(check.side == Side::Yours && check.place == Some(0) && remembered.tab == Tab::Code);
+        let mut next = Check::default();
+        next.follow(&context, &mut remembered);
+        assert!(next.is_open() && remembered.tab == Tab::Code);
+        next.close();
+        next.follow(&context, &mut remembered);
+        assert_eq!(remembered.mine, None, "a picture that was closed does not come back");
     }
 }

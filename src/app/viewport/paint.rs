@@ -4,10 +4,10 @@ use super::pixel_values::PixelValues;
 use super::placement::Placement;
 use crate::app::commands::Snapshot;
 use crate::app::model::{Document, Mode, Show};
-use crate::app::toolkit::overlay::{CORNER, WHOLE, plate, title, wipe};
+use crate::app::toolkit::overlay::{WHOLE, legend, plate, title, wipe};
 use crate::app::toolkit::{Texture, theme};
 use crate::app::tools::paths::Paths;
-use crate::numbers::heat::{HeatScale, colour_at};
+use crate::numbers::heat::HeatScale;
 use crate::progressive::Phase;
 use eframe::egui::{
     self, Align2, Color32, CornerRadius, Painter, Rect, Stroke, TextStyle, TextureOptions, Ui, pos2, vec2,
@@ -71,7 +71,7 @@ pub(super) fn paint(
     let is_difference = view.mode() == Some(Mode::Difference);
     let scale = if is_difference { Some(HeatScale::DIFFERENCE) } else { view.show().scale(&view.tone) };
     if let Some(scale) = scale {
-        paint_scale(ui, &painter, corners, &scale);
+        legend(ui, &painter, corners, &scale);
     } else if view.tone.exposure != 0.0 && view.show() == Show::Picture {
         let text = format!("Exposure {:+.1}", view.tone.exposure).replace('-', "\u{2212}");
         title(ui, &painter, corners, Align2::LEFT_BOTTOM, &text);
@@ -111,30 +111,6 @@ fn shape_in(rect: Rect, [width, height]: [u32; 2]) -> Rect {
     let stretch = rect.size() / size;
     let is_same = stretch.max_elem() < 1.02 * stretch.min_elem();
     if is_same { rect } else { Rect::from_center_size(rect.center(), size * stretch.min_elem()) }
-}
-
-/// Draws the legend of a heat map in the lower left corner of `rect`.
-fn paint_scale(ui: &Ui, painter: &Painter, rect: Rect, scale: &HeatScale) {
-    const STEPS: usize = 64;
-    let (font, visuals) = (TextStyle::Small.resolve(ui.style()), ui.visuals());
-    // The legend is as large as its letters.
-    let em = font.size;
-    let size = vec2(20.0 * em, 5.0 * em);
-    let legend = Rect::from_min_size(rect.left_bottom() + vec2(CORNER, -size.y - CORNER), size);
-    painter.rect_filled(legend, CornerRadius::same(4), visuals.panel_fill.gamma_multiply(0.9));
-    let title = legend.min + vec2(2.0, 0.5) * em;
-    painter.text(title, Align2::LEFT_TOP, scale.title, font.clone(), visuals.weak_text_color());
-    let bar = Rect::from_min_size(title + vec2(0.0, 1.5 * em), vec2(size.x - 4.0 * em, em));
-    for step in 0..STEPS {
-        let [red, green, blue] = colour_at((step as f64 + 0.5) / STEPS as f64);
-        let [from, to] = [step, step + 1].map(|step| bar.left() + bar.width() * step as f32 / STEPS as f32);
-        let part = Rect::from_x_y_ranges(from..=to + 0.5, bar.y_range());
-        painter.rect_filled(part, 0.0, Color32::from_rgb(red, green, blue));
-    }
-    for (value, name) in scale.marks() {
-        let at = pos2(bar.left() + bar.width() * scale.place(value) as f32, bar.bottom() + 0.2 * em);
-        painter.text(at, Align2::CENTER_TOP, name, font.clone(), visuals.text_color());
-    }
 }
 
 /// Shows what will happen to files that are dragged over the window.

@@ -35,7 +35,7 @@ impl Window {
                 Err(reason) => self.shell.toasts.bad(format!("Not opened: {reason}")),
             }
         }
-        self.tools.check.follow(&mut self.model.remembered);
+        self.tools.check.follow(context, &mut self.model.remembered);
         while let Some(Ok((picture, what))) = self.files.copied.take() {
             self.shell.toasts.good(format!("Copied the {what}"));
             context.copy_image(picture);

@@ -34,6 +34,8 @@ pub struct Answer {
     pub stage: Option<&'static Stage>,
     /// Figures and observations, one a line.
     pub evidence: Vec<String>,
+    /// Column and row where it differs from ours by more than noise, the worst first.
+    pub places: Vec<[u32; 2]>,
     /// Further faults, of the file rather than the picture.
     pub damages: Vec<Damage>,
 }
@@ -74,6 +76,7 @@ impl Answer {
             section: None,
             stage: None,
             evidence: Vec::new(),
+            places: Vec::new(),
             damages: Vec::new(),
         }
     }
@@ -98,6 +101,7 @@ impl Finding {
             section: None,
             stage: Some(self.stage),
             evidence: self.evidence(mine),
+            places: if self.right.differing > 0.0 { self.right.places.clone() } else { Vec::new() },
             damages: mine.damages.clone(),
         };
         if let Some(mistake) = self.named().filter(|_| self.is_other_right()) {

@@ -20,7 +20,7 @@ pub use hypothesis::{Compared, Hypothesis, Mistake, Studio};
 pub use judge::{Finding, judge, judge_again, stages};
 pub use mine::Mine;
 pub use mistakes::MISTAKES;
-pub use watch::{Change, Watched};
+pub use watch::{POLL_INTERVAL, Watched};
 
 use super::answer::{Verdict, deliver, lines};
 use crate::cli::terminal::{Display, print_beside};
@@ -145,7 +145,7 @@ pub fn pictures(mine: &Mine, finding: &Finding) -> [Vec<[u8; 3]>; 3] {
     let ours = right.hypothesis.written.bytes_of(&right.rendered.mean(), [mine.width, mine.height]);
     let difference = mine.bytes.iter().zip(&ours).map(|(mine, ours)| {
         let square = |channel: usize| ((f64::from(mine[channel]) - f64::from(ours[channel])) / 255.0).powi(2);
-        HeatScale::ERROR.colour(((square(0) + square(1) + square(2)) / 3.0).sqrt())
+        HeatScale::DISPLAYED.colour(((square(0) + square(1) + square(2)) / 3.0).sqrt())
     });
     let difference = difference.collect();
     [mine.bytes.clone(), ours, difference]

@@ -10,7 +10,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant, SystemTime};
 
 /// How often a file is looked at.
-const POLL_INTERVAL: Duration = Duration::from_millis(200);
+pub const POLL_INTERVAL: Duration = Duration::from_millis(200);
 
 /// A file that ends early is at its end if nothing is added for so long.
 const SETTLED: Duration = Duration::from_secs(3);
@@ -26,7 +26,7 @@ fn stamp(path: &Path) -> Stamp {
     Some((found.len(), found.modified().ok()))
 }
 
-/// A file that is read whenever it has changed.
+/// A picture that is judged whenever its file has changed.
 #[derive(Debug)]
 pub struct Watched {
     path: PathBuf,
@@ -34,58 +34,59 @@ pub struct Watched {
     seen: (Stamp, Instant),
     is_told: bool,
     rows: u32,
-}
-
-/// What has become of a watched file.
-#[derive(Debug)]
-pub enum Change {
-    /// It has more rows than before, but not all.
-    Grown(Mine),
-    /// It is written to its end, and right or wrong, or cannot be read.
-    Done(Result<Mine>),
+    last: Option<Finding>,
 }
 
 impl Watched {
     pub fn new(path: &Path) -> Self {
-        Watched { path: path.to_owned(), seen: (None, Instant::now()), is_told: false, rows: 0 }
+        Watched { path: path.to_owned(), seen: (None, Instant::now()), is_told: false, rows: 0, last: None }
     }
 
-    /// What is new, if the file has rested since the last look. Call it every few tenths of a second.
-    pub fn look(&mut self) -> Option<Change> {
+    /// The picture, and what `judge` finds in it, if there is something new. `judge` is given what was found last. Call it
+    /// every [`POLL_INTERVAL`].
+    pub fn judged(
+        &mut self,
+        judge: impl FnOnce(&Mine, Option<&Finding>) -> Result<Finding>,
+    ) -> Option<Result<(Mine, Finding)>> {
+        let found = self.look()?.and_then(|mine| Ok((judge(&mine, self.last.as_ref())?, mine)));
+        Some(found.map(|(finding, mine)| {
+            self.last = Some(finding.clone());
+            (mine, finding)
+        }))
+    }
+
+    /// What is new: the picture, perhaps with some of its rows only, or why it cannot be read.
+    fn look(&mut self) -> Option<Result<Mine>> {
         let now = stamp(&self.path);
-        if now != self.seen.0 {
+        let has_changed = now != self.seen.0;
+        if has_changed {
             let is_rewritten =
                 now.is_none_or(|(length, _)| self.seen.0.is_some_and(|(before, _)| length < before));
             if is_rewritten || self.is_told {
                 self.rows = 0;
             }
             (self.seen, self.is_told) = ((now, Instant::now()), false);
-            // It may be torn right now, unless it only grows.
-            return self.grown();
         }
         if self.is_told {
             return None;
         }
-        let read = now.map(|_| Mine::read(&self.path));
+        let age = now.and_then(|(_, modified)| modified?.elapsed().ok()).unwrap_or_default();
+        let is_settled = age.max(self.seen.1.elapsed()) >= SETTLED;
+        if has_changed && !is_settled {
+            // It may be torn right now, unless it only grows.
+            return self.grown().map(Ok);
+        }
+        let read = Mine::read(&self.path);
         // Changed while it was read.
-        if stamp(&self.path) != now {
+        if stamp(&self.path) != now || read.is_err() && !is_settled {
             return None;
         }
-        match read {
-            Some(Ok(mine)) => {
-                self.is_told = true;
-                Some(Change::Done(Ok(mine)))
-            }
-            _ if self.seen.1.elapsed() < SETTLED => None,
-            read => {
-                self.is_told = true;
-                Some(Change::Done(read.unwrap_or_else(|| Mine::read(&self.path))))
-            }
-        }
+        self.is_told = true;
+        Some(read)
     }
 
     /// The rows of a picture that grows, if there are enough and more than before.
-    fn grown(&mut self) -> Option<Change> {
+    fn grown(&mut self) -> Option<Mine> {
         let mine = Mine::begun(&self.path)?;
         let least = (ROWS_LEAST * f64::from(mine.height)) as u32;
         // A row that is judged costs as much as the whole picture, so they are judged in few steps.
@@ -93,7 +94,7 @@ impl Watched {
             return None;
         }
         self.rows = mine.rows;
-        Some(Change::Grown(mine))
+        Some(mine)
     }
 }
 
@@ -101,24 +102,13 @@ impl Watched {
 pub(super) fn run(options: &CheckOptions) -> Result<ExitCode> {
     let interrupt = Interrupt::install()?;
     let mut lines = Lines::new(options);
-    let mut watched: Vec<(Watched, Option<Finding>)> =
-        options.pictures.iter().map(|path| (Watched::new(path), None)).collect();
+    let mut watched: Vec<Watched> = options.pictures.iter().map(|path| Watched::new(path)).collect();
     while !interrupt.is_set() {
-        for (watched, last) in &mut watched {
-            let mine = match watched.look() {
-                Some(Change::Done(Ok(mine)) | Change::Grown(mine)) => mine,
-                Some(Change::Done(Err(reason))) => {
-                    lines.fail(&watched.path, &reason)?;
-                    continue;
-                }
-                None => continue,
-            };
-            match judged(&mine, options, last.as_ref()) {
-                Ok(finding) => {
-                    lines.add(&watched.path, &mine, &finding)?;
-                    *last = Some(finding);
-                }
-                Err(reason) => lines.fail(&watched.path, &reason)?,
+        for watched in &mut watched {
+            match watched.judged(|mine, last| judged(mine, options, last)) {
+                Some(Ok((mine, finding))) => lines.add(&watched.path, &mine, &finding)?,
+                Some(Err(reason)) => lines.fail(&watched.path, &reason)?,
+                None => {}
             }
         }
         sleep(POLL_INTERVAL);
