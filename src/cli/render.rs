@@ -8,7 +8,7 @@ use super::values::{
 use super::{Request, backend, is_given};
 use crate::backends::BackendChoice;
 use crate::film::checkpoint;
-use crate::job::output::OutputFormat;
+use crate::job::output::{OutputFormat, is_named_picture, read_description};
 use crate::job::recipe::{Recipe, plain_name};
 use crate::job::render::RenderJob;
 use crate::job::saved;
@@ -33,7 +33,7 @@ pub(super) struct RenderFlags {
     /// How to draw the window; auto: wgpu, or gl without a hardware adapter
     #[arg(long, value_enum, default_value = "auto", conflicts_with = "batch")]
     pub draw_with: DrawWith,
-    /// Open this film, picture or scene file in the window; FILE without a flag does the same
+    /// Open this film, picture or scene file in the window; FILE without a flag does the same. A picture of another program is checked
     #[arg(long, value_name = "FILE", conflicts_with_all = ["batch", "list", "scene", "stage", "resume", "AnimationFlags"])]
     pub open: Option<PathBuf>,
     /// Open the window with its usual first picture instead of what was shown last
@@ -155,6 +155,8 @@ pub struct WindowOptions {
     pub stop: Option<Stop>,
     /// The film to resume.
     pub resume: Option<PathBuf>,
+    /// The picture of another program to check.
+    pub mine: Option<PathBuf>,
     /// Whether the picture was read from a film or another picture.
     pub is_saved: bool,
     /// Whether to open the usual first picture instead of the last one.
@@ -205,10 +207,11 @@ pub(super) fn request(mut flags: RenderFlags, matches: &ArgMatches) -> Result<Re
     if flags.list {
         return Ok(Request::List);
     }
-    let mut picture = None;
+    let (mut picture, mut mine) = (None, None);
     match flags.open.take() {
         Some(path) if is_scene_file(&path) => flags.picture.scene = Some(path.into()),
         Some(path) if checkpoint::read_head(&path).is_ok() => flags.files.resume = Some(path),
+        Some(path) if is_others(&path) => mine = Some(path),
         other => picture = other,
     }
     let files = &mut flags.files;
@@ -216,7 +219,10 @@ pub(super) fn request(mut flags: RenderFlags, matches: &ArgMatches) -> Result<Re
         files.resume.clone_from(&files.checkpoint);
     }
     match (flags.batch, &flags.files.save_scene) {
-        (false, None) => Ok(Request::Window(Box::new(window(flags, picture.as_deref(), matches)?))),
+        (false, None) => {
+            let options = window(flags, picture.as_deref(), matches)?;
+            Ok(Request::Window(Box::new(WindowOptions { mine, ..options })))
+        }
         (false, Some(path)) => {
             check_paths(&flags, None)?;
             let saved = flags.files.resume.as_deref().or(picture.as_deref());
@@ -230,6 +236,11 @@ pub(super) fn request(mut flags: RenderFlags, matches: &ArgMatches) -> Result<Re
 /// Whether a file is a scene rather than a picture, which only its name tells.
 fn is_scene_file(path: &Path) -> bool {
     path == Path::new(STANDARD) || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"))
+}
+
+/// Whether a file is a picture of another program.
+fn is_others(path: &Path) -> bool {
+    is_named_picture(path) && path.exists() && read_description(path).is_err()
 }
 
 /// `opened` is a picture without a film.
@@ -256,6 +267,7 @@ fn window(flags: RenderFlags, opened: Option<&Path>, matches: &ArgMatches) -> Re
         is_size_given: picture.size.is_some(),
         is_picture_given: picture.is_given() || saved.is_some() || samples.estimate_error.is_some(),
         is_device_given: backend::FLAGS.into_iter().any(|flag| is_given(matches, flag)),
+        mine: None,
         is_saved: saved.is_some() && !picture.has_source(),
         resume: files.resume.clone(),
         is_fresh: flags.fresh,

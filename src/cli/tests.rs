@@ -175,6 +175,10 @@ fn a_file_alone_is_opened_in_the_window() {
         let error = opened(&[path.as_ref(), "--stage".as_ref(), "sky".as_ref()]).unwrap_err();
         assert!(error.contains("--stage"), "{error}");
     }
+    // A picture of another program is checked.
+    std::fs::write(at("mine.ppm"), "P3\n1 1\n255\n1 2 3\n").unwrap();
+    let options = opened(&[at("mine.ppm").as_os_str()]).unwrap();
+    assert!(options.mine == Some(at("mine.ppm")) && !options.is_picture_given);
     let error = opened(&["chekc".as_ref()]).unwrap_err();
     assert!(error.contains("unrecognized") && error.contains("check"), "{error}");
     let error = opened(&["missing.exr".as_ref()]).unwrap_err();

@@ -13,7 +13,7 @@ use crate::backends::BackendChoice;
 use crate::cli::{CompanionOptions, ProgressChoice};
 use crate::denoise::Denoised;
 use crate::film::Film;
-use crate::job::output::{Description, OutputFormat, key, write_image};
+use crate::job::output::{Description, OutputFormat, is_named_picture, key, write_image};
 use crate::job::recipe::file;
 use crate::job::render::RenderJob;
 use crate::job::saved::{self, OpenError, Opened, SavedFilm};
@@ -276,11 +276,6 @@ impl Files {
         };
         self.resumed.ask("files", context, work);
     }
-}
-
-fn is_named_picture(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|ending| ["png", "ppm"].iter().any(|known| ending.eq_ignore_ascii_case(known)))
 }
 
 fn write(

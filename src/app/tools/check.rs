@@ -45,9 +45,6 @@ impl Checked {
     }
 }
 
-/// How many of the places that differ most are marked.
-const MARKS: usize = 5;
-
 /// The picture in the middle of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 enum Side {
@@ -209,7 +206,7 @@ impl Check {
                     (Side::Difference, About::new("Difference", "Where the two differ, and by how much")),
                 ];
                 self.side = switch(ui, 0.0, self.side, &sides).unwrap_or(self.side);
-                let next = self.place.map_or(0, |place| (place + 1) % answer.places.len().clamp(1, MARKS));
+                let next = self.place.map_or(0, |place| (place + 1) % answer.places.len().max(1));
                 let words = if self.place.is_none() { "Show where" } else { "Next place" };
                 ui.horizontal(|ui| {
                     if !answer.places.is_empty() && ui.button(words).clicked() {
@@ -285,7 +282,7 @@ impl Check {
                 overlay::legend(ui, &painter, seen, &HeatScale::DISPLAYED);
             }
         }
-        for [x, y] in answer.places.iter().take(MARKS) {
+        for [x, y] in &answer.places {
             let middle = rect.min + vec2(*x as f32, *y as f32) * scale;
             let mark = Rect::from_center_size(middle, Vec2::splat(10.0 * scale));
             for (width, colour) in [(3.0, Color32::from_black_alpha(140)), (1.0, Color32::WHITE)] {

@@ -67,6 +67,10 @@ impl Window {
         if let Some(file) = &options.file {
             remembered.note_recent(file);
         }
+        if options.mine.is_some() {
+            remembered.mine.clone_from(&options.mine);
+            (remembered.has_info, remembered.tab) = (true, Tab::Check);
+        }
         let goes_on = !options.is_fresh && !options.is_picture_given;
         let directory = options.state_directory.as_deref();
         let (autosave, Last { steps, film, has_ended_early }) =

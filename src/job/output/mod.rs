@@ -133,6 +133,12 @@ pub fn read_description(path: &Path) -> Result<Description> {
     })
 }
 
+/// Whether a file's name is that of a picture that many programs write.
+pub fn is_named_picture(path: &Path) -> bool {
+    let is = |known: &&str| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(known));
+    ["png", "ppm"].iter().any(is)
+}
+
 /// The first bytes, which tell the format of a file.
 fn start_of(reader: &mut (impl Read + Seek)) -> io::Result<Vec<u8>> {
     let mut start = Vec::new();

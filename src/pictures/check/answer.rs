@@ -34,7 +34,7 @@ pub struct Answer {
     pub stage: Option<&'static Stage>,
     /// Figures and observations, one a line.
     pub evidence: Vec<String>,
-    /// Column and row where it differs from ours by more than noise, the worst first.
+    /// Column and row of a few places where it differs from ours by more than noise, the worst first.
     pub places: Vec<[u32; 2]>,
     /// Further faults, of the file rather than the picture.
     pub damages: Vec<Damage>,
@@ -101,7 +101,7 @@ impl Finding {
             section: None,
             stage: Some(self.stage),
             evidence: self.evidence(mine),
-            places: if self.right.differing > 0.0 { self.right.places.clone() } else { Vec::new() },
+            places: if self.right.differing > 0.0 { apart(&self.right.places) } else { Vec::new() },
             damages: mine.damages.clone(),
         };
         if let Some(mistake) = self.named().filter(|_| self.is_other_right()) {
@@ -221,6 +221,20 @@ impl Finding {
 
 /// Mean squared error of display values below which no fault can be seen.
 const NEARLY_RIGHT: f64 = 1.5e-4;
+
+/// The first places that are not next to each other.
+fn apart(places: &[[u32; 2]]) -> Vec<[u32; 2]> {
+    const MOST: usize = 5;
+    const DISTANCE: u32 = 24;
+    let mut chosen: Vec<[u32; 2]> = Vec::new();
+    for [x, y] in places {
+        let is_near = |[a, b]: &[u32; 2]| a.abs_diff(*x).max(b.abs_diff(*y)) < DISTANCE;
+        if chosen.len() < MOST && !chosen.iter().any(is_near) {
+            chosen.push([*x, *y]);
+        }
+    }
+    chosen
+}
 
 /// What can be measured of a picture that no mistake explains: brightness, where it differs, and shifts.
 fn measured(right: &Compared, mine: &Mine) -> Vec<String> {
