@@ -144,7 +144,6 @@ fn finding_sets_exit_code_files_and_json() {
     check(0, &[&["d/ours.png"], &stage[..]].concat());
     for (arguments, part) in [
         (&["nothing.ppm"][..], "nothing.ppm"),
-        (&["right.ppm", "--stage", "book"], "random"),
         (&["right.ppm", "--stage", "metall"], "did you mean metal?"),
         (&["right.ppm", "--out", "right.ppm"], "right.ppm"),
         (&["right.ppm", "--json", "nowhere/found.json"], "nowhere"),

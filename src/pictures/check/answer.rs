@@ -5,6 +5,7 @@ use super::tracer::{Steps, Tracer};
 use super::written::Seen;
 use super::{Damage, Finding, Mine};
 use crate::pictures::answer::Verdict;
+use crate::scene::{Scene, Sphere};
 use crate::stages::{Shading, Stage, book_url, heading};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,6 +94,7 @@ impl Answer {
 
 impl Finding {
     pub fn answer(&self, mine: &Mine) -> Answer {
+        let mine = &Mine { ignored: self.ignored.clone(), ..mine.clone() };
         let mut answer = Answer {
             kind: AnswerKind::Right,
             title: "It is right".to_owned(),
@@ -104,6 +106,13 @@ impl Finding {
             places: if self.right.differing > 0.0 { apart(&self.right.places) } else { Vec::new() },
             damages: mine.damages.clone(),
         };
+        if self.ignored.is_some() {
+            answer.title = "It is right, as far as it can be checked".to_owned();
+            answer.explanation =
+                "What does not depend on where the small spheres are differs from ours by noise only; \
+                                  glass, fuzz and the lens hardly show there"
+                    .to_owned();
+        }
         if let Some(mistake) = self.named().filter(|_| self.is_other_right()) {
             answer.title = "It is right for the book, though not the same as ours".to_owned();
             answer.explanation = capitalised(mistake.title);
@@ -177,6 +186,17 @@ impl Finding {
             percent => format!("{percent:.0} %"),
         };
         let mut evidence = Vec::new();
+        if let Some(ignored) = &self.ignored {
+            let compared = ignored.iter().filter(|is_ignored| !**is_ignored).count() as f64;
+            let spheres = Tracer::new(&self.right.hypothesis.recipe, Steps::OF_THE_BOOK, 1).spheres();
+            let shown = spheres.iter().zip(ignored.iter()).filter(|(_, is_ignored)| !**is_ignored);
+            let scene = &self.right.hypothesis.recipe.scene;
+            evidence.push(format!(
+                "{} of the pixels were compared: {}; the others depend on where the small spheres are",
+                percent(compared / ignored.len() as f64),
+                shares(shown.map(|(sphere, _)| name_of(scene, *sphere)))
+            ));
+        }
         if let Some(note) = self.mistake.as_ref().and_then(|found| found.hypothesis.note.as_deref()) {
             evidence.push(capitalised(note));
         }
@@ -270,27 +290,34 @@ fn measured(right: &Compared, mine: &Mine) -> Vec<String> {
     }
     let tracer = Tracer::new(&right.hypothesis.recipe, Steps::OF_THE_BOOK, 1);
     let spheres = tracer.spheres();
-    let name = |[x, y]: &[u32; 2]| match spheres[*y as usize * width + *x as usize] {
-        Some(sphere) => right.hypothesis.recipe.scene.materials[sphere.material].name.clone(),
-        None => "sky".to_owned(),
-    };
-    let mut counts: Vec<(String, usize)> = Vec::new();
     if right.differing > 0.0 {
-        for name in right.places.iter().map(name) {
-            match counts.iter_mut().find(|(known, _)| *known == name) {
-                Some((_, count)) => *count += 1,
-                None => counts.push((name, 1)),
-            }
-        }
-        counts.sort_by(|(_, a), (_, b)| b.cmp(a));
-        let all: usize = counts.iter().map(|(_, count)| count).sum();
-        let named = counts.iter().filter(|(_, count)| 50 * count >= all);
-        let names: Vec<String> = named
-            .map(|(name, count)| format!("{name} ({:.0} %)", 100.0 * *count as f64 / all as f64))
-            .collect();
-        measured.push(format!("blocks that differ show: {}", names.join(", ")));
+        let sphere = |[x, y]: &[u32; 2]| spheres[*y as usize * width + *x as usize];
+        let names = right.places.iter().map(|place| name_of(&right.hypothesis.recipe.scene, sphere(place)));
+        measured.push(format!("blocks that differ show: {}", shares(names)));
     }
     measured.into_iter().map(|line| capitalised(&line)).collect()
+}
+
+/// The material of a sphere, or the sky.
+fn name_of(scene: &Scene, sphere: Option<&Sphere>) -> String {
+    sphere.map_or_else(|| "sky".to_owned(), |sphere| scene.materials[sphere.material].name.clone())
+}
+
+/// How often each name occurs, in per cent, the most frequent first.
+fn shares(names: impl Iterator<Item = String>) -> String {
+    let mut counts: Vec<(String, usize)> = Vec::new();
+    for name in names {
+        match counts.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((name, 1)),
+        }
+    }
+    counts.sort_by(|(_, a), (_, b)| b.cmp(a));
+    let all: usize = counts.iter().map(|(_, count)| count).sum();
+    let named = counts.iter().filter(|(_, count)| 50 * count >= all);
+    let names: Vec<String> =
+        named.map(|(name, count)| format!("{name} ({:.0} %)", 100.0 * *count as f64 / all as f64)).collect();
+    names.join(", ")
 }
 
 fn capitalised(text: &str) -> String {

@@ -247,7 +247,7 @@ impl Compared {
 pub fn rough(seen: &Seen, mut hypothesis: Hypothesis, rendered: Rendered) -> (Hypothesis, Rendered, f64) {
     let rendered = fitted(seen, &mut hypothesis, rendered);
     let expected = hypothesis.written.predicted(seen, &rendered.mean());
-    let (mut sum, mut count) = (0.0, 1e-9);
+    let (mut sum, mut count, mut known) = (0.0, 1e-9, 0.0);
     let halves = rendered.halves.each_ref().map(|half| half.as_flattened());
     for (index, (seen, expected)) in
         seen.values.as_flattened().iter().zip(expected.as_flattened()).enumerate()
@@ -256,12 +256,13 @@ pub fn rough(seen: &Seen, mut hypothesis: Hypothesis, rendered: Rendered) -> (Hy
         let noise = 0.25 * (halves[0][index] - halves[1][index]).powi(2);
         // Displayed values as the reader sees them; our noise would weigh itself.
         let square = ((seen - expected).powi(2) - noise) / (4.0 * seen.max(0.02));
+        known += f64::from(u8::from(seen.is_finite()));
         if square.is_finite() {
             sum += square;
             count += 1.0;
         }
     }
-    let is_known = 4.0 * count > (3 * seen.values.len()) as f64;
+    let is_known = 4.0 * count > known;
     (hypothesis, rendered, if is_known { sum / count } else { f64::INFINITY })
 }
 
@@ -288,11 +289,12 @@ pub fn compare(seen: &Seen, mut hypothesis: Hypothesis, rendered: Rendered) -> C
         values: &values,
         noise: Noise::Spread,
         steps: Some(&seen.half_steps),
-        tolerance: 1e-4,
+        tolerance: seen.tolerance,
         rare: 0.0,
     });
     let limit = LARGEST_FACTOR * test.largest_limit;
-    let is_known = 4 * test.counts.iter().sum::<usize>() > 3 * test.blocks.len();
+    let finite = |values: &[[f64; 3]]| values.as_flattened().iter().filter(|value| value.is_finite()).count();
+    let is_known = 4 * finite(&values) > finite(&seen.values) && test.counts.iter().sum::<usize>() > 0;
     let is_noise = is_known && test.largest_excess() <= EXCESS_LIMIT && test.largest <= limit;
     let middle = |range: &Range<u32>| u32::midpoint(range.start, range.end);
     let beyond = test.blocks.iter().filter(|block| block.largest() > limit).count();

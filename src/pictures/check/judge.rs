@@ -4,11 +4,13 @@ use super::Mine;
 use super::hypothesis::{Compared, Hypothesis, Mistake, Rendered, Rest, Slope, Studio, compare, rough};
 use super::mistakes::applying_to;
 use super::noise::{Grain, grain, is_shared};
+use super::random::{fixed, is_random};
 use super::written::{Seen, Written};
 use crate::job::recipe::Recipe;
 use crate::stages::{Stage, SurfaceRule};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use std::cmp::Ordering;
+use std::sync::Arc;
 
 /// Samples per pixel of the right picture, and of the other candidates.
 const FINE: [u64; 2] = [256, 128];
@@ -80,6 +82,8 @@ pub struct Finding {
     /// Other mistakes that explain the picture as well.
     pub alike: Vec<&'static Mistake>,
     pub grain: Option<Grain>,
+    /// Pixels that were not compared, because they depend on where small spheres are placed.
+    pub ignored: Option<Arc<[bool]>>,
 }
 
 impl Finding {
@@ -124,14 +128,7 @@ impl Finding {
 /// Judges a picture, of `stage` if it is known. `say` is told what is being tried.
 pub fn judge(mine: &Mine, stage: Option<&'static Stage>, mut say: impl FnMut(String)) -> Result<Finding> {
     if let Some(stage) = stage {
-        if !stages().any(|known| known == stage) {
-            bail!(
-                "{} cannot be checked: its small spheres are placed at random, so every program's picture of it is \
-                 another; check an earlier section, such as --stage defocus",
-                stage.id
-            );
-        }
-        return judge_among(mine, &[stage], &mut say)?.context("there is no stage to compare with");
+        return judge_of(mine, stage, &mut say);
     }
     let near = candidates(mine, false, &mut say)?;
     let found = judge_among(mine, &near, &mut say)?;
@@ -141,11 +138,27 @@ pub fn judge(mine: &Mine, stage: Option<&'static Stage>, mut say: impl FnMut(Str
     if let Some(found) = found.as_ref().filter(|found| is_settled(found)) {
         return Ok(found.clone());
     }
+    for stage in stages().filter(|stage| is_random(stage)) {
+        let last = judge_of(mine, stage, &mut say)?;
+        if last.is_sure {
+            return Ok(last);
+        }
+    }
     let mut more = candidates(mine, true, &mut say)?;
     more.retain(|stage| !near.contains(stage));
     let mut found: Vec<Finding> = found.into_iter().chain(judge_among(mine, &more, &mut say)?).collect();
     found.sort_by(|a, b| a.closeness(b));
     found.into_iter().next().context("there is no stage to compare with")
+}
+
+/// Judges a picture of this stage.
+fn judge_of(mine: &Mine, stage: &'static Stage, say: &mut impl FnMut(String)) -> Result<Finding> {
+    if is_random(stage) {
+        say(format!("looking for what all pictures of {} have in common", stage.id));
+    }
+    let fixed = fixed(mine, stage)?;
+    let found = judge_among(&fixed, &[stage], say)?.context("there is no stage to compare with")?;
+    Ok(Finding { ignored: fixed.ignored.clone(), ..found })
 }
 
 /// The closest finding among these stages.
@@ -204,12 +217,13 @@ pub fn judge_again(
     say: impl FnMut(String),
 ) -> Result<Finding> {
     if let Some(last) = last.filter(|last| last.is_sure && last.named().is_some()) {
-        let trial = Trial::new(mine, last.stage)?;
+        let fixed = fixed(mine, last.stage)?;
+        let trial = Trial::new(&fixed, last.stage)?;
         let again = trial.finding_of(|known| {
             known.is_some_and(|known| last.named().is_some_and(|named| named.id == known.id))
         })?;
         if again.is_sure && again.named().is_some() {
-            return Ok(Finding { alike: last.alike.clone(), ..again });
+            return Ok(Finding { alike: last.alike.clone(), ignored: fixed.ignored.clone(), ..again });
         }
     }
     judge(mine, stage, say)
@@ -282,6 +296,8 @@ impl<'a> Trial<'a> {
         let grain = grain.map(|grain| Grain { is_smoothed: grain.is_smoothed && is_near, ..grain });
         // Of a stage that does not fit, the noise tells nothing.
         let grain = grain.filter(|grain| is_near || grain.samples >= SAMPLES_LEAST);
+        // The sky, which has no noise, is most of what is compared.
+        let grain = grain.filter(|_| self.mine.ignored.is_none());
         let is_smoothed = grain.is_some_and(|grain| grain.is_smoothed);
         let mut finding = Finding {
             stage: self.stage,
@@ -290,6 +306,7 @@ impl<'a> Trial<'a> {
             is_sure: true,
             alike: Vec::new(),
             grain,
+            ignored: None,
         };
         let named = chosen.and_then(|chosen| of(&chosen));
         if let Some(chosen) = chosen.filter(|_| !is_smoothed) {
@@ -348,10 +365,11 @@ impl<'a> Trial<'a> {
         let factor = factor(self.right.hypothesis.size(), recipe.rules.antialiasing);
         let [width, height] = self.right.hypothesis.size().map(|side| side as usize);
         let small_right = self.right.rendered.reduced(width, factor as usize);
+        let small_mask = self.mine.compared(factor);
         let plain_right = {
             let mut plain = self.right.hypothesis.clone();
             plain.plain();
-            self.studio.halves(&plain, factor, SMALL, None)?
+            self.studio.halves(&plain, factor, SMALL, small_mask.as_deref())?
         };
         let small_seen = self.seen.reduced(factor);
         let (right, _, right_misfit) = rough(&small_seen, self.right.hypothesis.clone(), small_right.clone());
@@ -369,13 +387,14 @@ impl<'a> Trial<'a> {
                 continue;
             }
             if hypothesis.is_fine {
-                fine.push((hypothesis, is_masked.then(|| edges.clone())));
+                let mask = is_masked.then(|| edges.clone()).or_else(|| self.mine.compared(1));
+                fine.push((hypothesis, mask));
                 continue;
             }
             let is_right = hypothesis.is_right_before_writing(&recipe);
             let rendered = match is_right {
                 true => small_right.clone(),
-                false => self.studio.halves(&hypothesis, factor, SMALL, None)?,
+                false => self.studio.halves(&hypothesis, factor, SMALL, small_mask.as_deref())?,
             };
             let is_alike = hypothesis.written == right.written;
             if is_right && !is_alike && self.is_as_right(&hypothesis.written) {
@@ -567,9 +586,9 @@ fn all_mistakes(recipe: &Recipe) -> Vec<Hypothesis> {
     applying_to(recipe).filter(is_compared).flat_map(|mistake| mistake.pictures(recipe)).collect()
 }
 
-/// The stages that can be checked. The final picture places its small balls at random, so every program's differs.
+/// The stages that can be checked: all.
 pub fn stages() -> impl Iterator<Item = &'static Stage> {
-    Stage::ALL.iter().filter(|stage| stage.next().is_some() || !stage.is_in_book())
+    Stage::ALL.iter()
 }
 
 /// The stages that the picture resembles most, as rendered right or written wrongly, or, if `is_thorough`, with any
@@ -581,7 +600,7 @@ fn candidates(mine: &Mine, is_thorough: bool, mut say: impl FnMut(String)) -> Re
     let what = if is_thorough { "the mistakes of all stages" } else { "all stages" };
     say(format!("comparing with {what}"));
     let mut known: Vec<(Written, Seen)> = Vec::new();
-    for stage in stages() {
+    for stage in stages().filter(|stage| !is_random(stage)) {
         let mut studio = Studio::new(stage.recipe(), [mine.width, mine.height])?;
         let right = Hypothesis::right(studio.recipe());
         let recipe = &right.recipe.clone();

@@ -4,6 +4,7 @@ use crate::job::output::{Damage, Incomplete, ReadPicture, Values, decode_picture
 use anyhow::{Result, anyhow, bail, ensure};
 use std::io::Cursor;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Minimum width and height, pixels: the book's first picture. With fewer pixels, almost any picture could pass.
 const SIZE_MIN: [u32; 2] = [16, 9];
@@ -19,6 +20,8 @@ pub struct Mine {
     pub rows: u32,
     /// RGB, row by row from the top; black where it is not known.
     pub bytes: Vec<[u8; 3]>,
+    /// Pixels that are not compared.
+    pub ignored: Option<Arc<[bool]>>,
     /// The largest value that the file can hold.
     pub most: u16,
     /// Name of the file format, for messages.
@@ -37,6 +40,7 @@ impl Mine {
             height,
             rows: height,
             bytes,
+            ignored: None,
             most: 255,
             format: "P3",
             damages: Vec::new(),
@@ -108,7 +112,24 @@ impl Mine {
             (128.0 * (low + high)) as u8
         };
         let bytes = rgb.iter().map(|pixel| pixel.map(byte)).collect();
-        Ok(Mine { width, height, rows: height, bytes, most, format, damages, notes })
+        Ok(Mine { width, height, rows: height, bytes, ignored: None, most, format, damages, notes })
+    }
+
+    /// Which pixels of the picture, smaller by a factor, are compared; `None` if all are.
+    pub fn compared(&self, factor: u32) -> Option<Vec<bool>> {
+        let ignored = self.ignored.as_ref()?;
+        let [columns, rows] = [self.width / factor, self.height / factor];
+        let is_compared = |x: u32, y: u32| {
+            let pixels = (0..factor * factor)
+                .map(|at| (y * factor + at / factor) * self.width + x * factor + at % factor);
+            pixels.into_iter().all(|pixel| !ignored[pixel as usize])
+        };
+        Some(
+            (0..rows)
+                .flat_map(|y| (0..columns).map(move |x| [x, y]))
+                .map(|[x, y]| is_compared(x, y))
+                .collect(),
+        )
     }
 
     /// Bytes in a step of the file's values, at least 1.

@@ -10,6 +10,7 @@ mod judge;
 mod mine;
 mod mistakes;
 mod noise;
+mod random;
 mod tracer;
 mod watch;
 mod written;

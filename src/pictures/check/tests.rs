@@ -255,6 +255,35 @@ fn the_right_picture_of_every_stage_is_right_without_the_stage() {
     }
 }
 
+/// Every program places the small spheres of 14.1 elsewhere.
+#[test]
+fn the_final_picture_is_checked_where_it_is_not_random() {
+    let stage = Stage::find("book").unwrap();
+    let size = [160, 90];
+    let mut studio = Studio::new(stage.recipe(), size).unwrap();
+    let mut own = Hypothesis::right(studio.recipe());
+    own.recipe.scene = Arc::new(crate::scene::builtin::book_of(7));
+    let mut judged = |own: &Hypothesis| {
+        let shown = studio.render(own, 64).unwrap();
+        let mine = picture_of(own.written.bytes_of(&shown, size), size);
+        let finding = judge(&mine, Some(stage), |_| {}).unwrap();
+        (finding.answer(&mine), finding.named().map(|named| named.id))
+    };
+    let (answer, named) = judged(&own);
+    assert!(answer.kind == AnswerKind::Right && named.is_none(), "{answer:?}");
+    assert!(answer.evidence[0].contains("sky") && answer.evidence[0].contains("gold"), "{answer:?}");
+    let flipped = Hypothesis { written: Written { order: Order::Flipped, ..own.written }, ..own.clone() };
+    assert_eq!(judged(&flipped).1, Some("flipped-rows"));
+    let scene = Arc::make_mut(&mut own.recipe.scene);
+    let gold = scene.materials.iter_mut().find(|material| material.name == "gold").unwrap();
+    gold.material = Material::Metal { albedo: DVec3::new(0.5, 0.6, 0.7), fuzz: 0.0 };
+    let (answer, _) = judged(&own);
+    assert!(
+        answer.kind != AnswerKind::Right && answer.evidence.join(" ").contains("show: gold"),
+        "{answer:?}"
+    );
+}
+
 /// A verdict is earned by the picture: other bytes than ours alone name nothing.
 #[test]
 fn what_only_resembles_a_mistake_is_not_named_surely() {
@@ -318,8 +347,15 @@ fn answer_covers_damage_shape_and_mistake() {
         rendered: rendered(vec![[0.0; 3]; 1600]),
         expected: vec![[0.0; 3]; 1600],
     };
-    let finding =
-        |right, mistake, is_sure| Finding { stage, right, mistake, is_sure, alike: Vec::new(), grain: None };
+    let finding = |right, mistake, is_sure| Finding {
+        stage,
+        right,
+        mistake,
+        is_sure,
+        alike: Vec::new(),
+        grain: None,
+        ignored: None,
+    };
     let answer = |size: [u32; 2], damages: &[Damage], finding: &Finding| {
         let bytes = vec![[0; 3]; (size[0] * size[1]) as usize];
         finding.answer(&Mine { damages: damages.to_vec(), ..picture_of(bytes, size) })
@@ -361,7 +397,15 @@ fn rough_difference_is_rms_of_channels() {
     let stage = Stage::find("sky").unwrap();
     let [shown, ours, difference] = pictures(
         &mine,
-        &Finding { stage, right, mistake: None, is_sure: true, alike: Vec::new(), grain: None },
+        &Finding {
+            stage,
+            right,
+            mistake: None,
+            is_sure: true,
+            alike: Vec::new(),
+            grain: None,
+            ignored: None,
+        },
     );
     // The upper row is linear, the lower the square root.
     assert_eq!((shown, ours), (bytes.to_vec(), vec![[64; 3], [64; 3], [128; 3], [128; 3]]));

@@ -89,6 +89,9 @@ impl Order {
     }
 }
 
+/// Differences that count as equal where some pixels are ignored, in linear and in display values.
+pub const EQUAL: f64 = 0.015;
+
 /// The reader's picture in linear values, as far as they are known; row by row from the top of what was rendered.
 #[derive(Clone, Debug)]
 pub struct Seen {
@@ -97,6 +100,8 @@ pub struct Seen {
     pub values: Vec<[f64; 3]>,
     /// Half of the step between neighbouring values.
     pub half_steps: Vec<[f64; 3]>,
+    /// Differences of means that say nothing.
+    pub tolerance: f64,
 }
 
 impl Seen {
@@ -119,14 +124,25 @@ impl Seen {
             let [linear, half] = written.linear(byte, pixel / size[0] as usize, size[1] as usize);
             (value[channel], half_steps[pixel][channel]) = (linear, half * step);
         }
-        Seen { size, values, half_steps }
+        for (value, _) in
+            values.iter_mut().zip(mine.ignored.iter().flat_map(|all| all.iter())).filter(|(_, is)| **is)
+        {
+            *value = [f64::NAN; 3];
+        }
+        let tolerance = if mine.ignored.is_some() { EQUAL } else { 1e-4 };
+        Seen { size, values, half_steps, tolerance }
     }
 
     /// The mean of each square of `factor` x `factor` pixels.
     pub fn reduced(&self, factor: u32) -> Seen {
         let reduce = |of: &[[f64; 3]]| reduced(of, self.size[0] as usize, factor as usize);
         let size = self.size.map(|side| side / factor);
-        Seen { size, values: reduce(&self.values), half_steps: reduce(&self.half_steps) }
+        Seen {
+            size,
+            values: reduce(&self.values),
+            half_steps: reduce(&self.half_steps),
+            tolerance: self.tolerance,
+        }
     }
 }
 

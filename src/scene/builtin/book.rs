@@ -19,6 +19,11 @@ pub const BOOK_CAMERA: Camera = Camera {
 
 /// The scene on the book's cover: 485 spheres, always the same.
 pub fn book() -> Scene {
+    book_of(SEED)
+}
+
+/// The book's final scene with small spheres of this seed.
+pub fn book_of(seed: u64) -> Scene {
     let mut scene = Scene::default();
     let ground = scene.add_material("ground", Material::Lambertian { albedo: DVec3::splat(0.5) });
     let glass = scene.add_material("glass", Material::Dielectric { refraction_index: 1.5 });
@@ -31,7 +36,7 @@ pub fn book() -> Scene {
     scene.add_sphere(DVec3::new(4.0, 1.0, 0.0), 1.0, gold);
 
     for cell in 0..22 * 22_u32 {
-        let mut draws = Draws::new(SEED, u64::from(cell));
+        let mut draws = Draws::new(seed, u64::from(cell));
         let corner = DVec3::new(f64::from(cell / 22) - 11.0, 0.2, f64::from(cell % 22) - 11.0);
         let choice = draws.unit();
         let offset = DVec3::new(0.9 * draws.unit(), 0.0, 0.9 * draws.unit());

@@ -5,7 +5,7 @@ mod chapters;
 mod field;
 mod random;
 
-pub use book::{BOOK_CAMERA, book};
+pub use book::{BOOK_CAMERA, book, book_of};
 pub use chapters::{
     LeftSphere, SIDE_VIEW, WIDE_LENS, empty, matte_on_ground, metals, one_sphere, three_spheres,
     touching_spheres,

@@ -1,0 +1,57 @@
+//! The final picture of 14.1, in which the small spheres are placed at random: what every program's picture has in common.
+
+use super::Mine;
+use super::hypothesis::{Hypothesis, Studio};
+use super::written::{EQUAL, reduced};
+use crate::scene::builtin::book_of;
+use crate::stages::Stage;
+use anyhow::Result;
+use std::borrow::Cow;
+use std::sync::Arc;
+
+/// How many scenes are compared, each with other random numbers.
+const SCENES: u64 = 6;
+
+/// Samples per pixel of their pictures.
+const SAMPLES: u64 = 32;
+
+/// Width and height of the cells that are compared, pixels.
+const CELL: usize = 4;
+
+/// The picture, without the pixels that depend on where the small spheres of `stage` are.
+pub fn fixed<'a>(mine: &'a Mine, stage: &Stage) -> Result<Cow<'a, Mine>> {
+    if !is_random(stage) {
+        return Ok(Cow::Borrowed(mine));
+    }
+    let [width, height] = [mine.width as usize, mine.height as usize];
+    let mut studio = Studio::new(stage.recipe(), [mine.width, mine.height])?;
+    let mut pictures = Vec::new();
+    for seed in 0..SCENES {
+        let mut hypothesis = Hypothesis::right(studio.recipe());
+        hypothesis.recipe.scene = Arc::new(book_of(100 + seed));
+        // All have the same random numbers, so paths that meet no small sphere are equal.
+        let linear = studio.halves(&hypothesis, 1, SAMPLES, None)?.mean();
+        pictures.push(reduced(&linear, width, CELL));
+    }
+    let (columns, rows) = (width / CELL, height / CELL);
+    let spread = |cell: usize, channel: usize| {
+        let values = pictures.iter().map(|picture| picture[cell][channel].sqrt());
+        let range = values.fold([f64::INFINITY, 0.0], |[low, high], x| [low.min(x), high.max(x)]);
+        range[1] - range[0]
+    };
+    let depends: Vec<bool> =
+        (0..columns * rows).map(|cell| (0..3).any(|channel| spread(cell, channel) > EQUAL)).collect();
+    // A cell beside one that depends may do so in yet another scene.
+    let is_ignored = |pixel: usize| {
+        let (x, y) = ((pixel % width / CELL).min(columns - 1), (pixel / width / CELL).min(rows - 1));
+        let near = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
+        near(y, rows).any(|y| near(x, columns).any(|x| depends[y * columns + x]))
+    };
+    let ignored = (0..width * height).map(is_ignored).collect();
+    Ok(Cow::Owned(Mine { ignored: Some(ignored), ..mine.clone() }))
+}
+
+/// Whether a stage's small spheres are placed at random.
+pub fn is_random(stage: &Stage) -> bool {
+    stage.is_in_book() && stage.next().is_none()
+}
