@@ -1,5 +1,5 @@
-//! What the window saves by itself: each edit at once, as text, and long films at intervals, at the end and on a panic. The
-//! next window goes on with them. A lock keeps several windows apart; a window that does not end in order leaves it behind.
+//! Autosave: every edit at once, as text; long films at intervals, on exit and on a panic. The next window restores them.
+//! Only the window that holds the lock saves. A window that crashes leaves the lock file behind.
 
 use super::describer;
 use super::edits::{self, STEPS};
@@ -17,16 +17,16 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Writing a film takes at most one part in this many of the time.
+/// Writing films takes at most 1 / `SHARE` of the time.
 const SHARE: u32 = 20;
 
-/// Edits of scenes with at most so many spheres are written at once, however busy the machine is.
+/// Edits of scenes with up to this many spheres are written without delay.
 const AT_ONCE: usize = 10_000;
 
-/// How long a window waits for another that is about to end.
+/// How long to wait for the lock of a window that is closing.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// What the names of files begin with that wait for the user's answer.
+/// File name prefix of recovered files that wait for the user's decision.
 const LEFT: &str = "recovered";
 
 /// The picture of a film, and how many samples per pixel it has.
@@ -35,7 +35,7 @@ pub fn picture_of(path: &Path) -> Option<(Document, u64)> {
     Some((Document::of_film(&saved.recipe().ok()?, saved.stage()), saved.samples()?))
 }
 
-/// The document at the size of the film in the file at `path`, if that is its film.
+/// The document at the size of the film at `path`, if the film is one of this document.
 fn with_film(document: &Document, path: &Path) -> Option<Document> {
     let saved = Saved::describe(path).ok()?;
     let theirs = saved.recipe().ok()?;
@@ -46,14 +46,15 @@ fn with_film(document: &Document, path: &Path) -> Option<Document> {
     (document.job(1).ok()? == theirs.job().ok()?).then_some(document)
 }
 
-/// The files of the window that has locked them.
+/// The autosave directory, locked by this window.
 struct Place {
     directory: PathBuf,
     _lock: File,
 }
 
 impl Place {
-    /// With whether the last window ended early. `None` if another window has it, or nothing can be written.
+    /// Locks the directory, and tells whether the last window crashed. `None` if another window holds the lock or the
+    /// directory is not writable.
     fn claim(directory: &Path) -> Option<(Self, bool)> {
         fs::create_dir_all(directory).ok()?;
         let path = lock_in(directory);
@@ -72,7 +73,7 @@ impl Place {
         self.directory.join("edits.json")
     }
 
-    /// Keeps a file until the user has answered what to do with it.
+    /// Renames a file so that it stays until the user decides.
     fn set_aside(&self, path: &Path) {
         let ending = path.extension().unwrap_or_default().display();
         let named = |number: u32| self.directory.join(format!("{LEFT}-{number}.{ending}"));
@@ -85,12 +86,12 @@ impl Place {
     }
 }
 
-/// A window that ends in order removes it.
+/// Removed when a window exits cleanly.
 fn lock_in(directory: &Path) -> PathBuf {
     directory.join("window.lock")
 }
 
-/// A file that is written in the background, and what of it was written last, or is being written.
+/// A file that is written in the background, with the key of its last or current content.
 struct Writing<K> {
     written: Option<K>,
     begun: Instant,
@@ -107,7 +108,7 @@ impl<K> Default for Writing<K> {
 }
 
 impl<K: PartialEq> Writing<K> {
-    /// Takes the outcomes. Returns why the last was none, once.
+    /// Takes the outcomes. Reports the first of several failures in a row.
     fn follow(&mut self, pause: impl Fn(Duration) -> Duration) -> Option<String> {
         let mut told = None;
         while let Some(outcome) = self.outcomes.take() {
@@ -149,16 +150,16 @@ pub struct Autosave {
     /// By run and samples per pixel.
     films: Writing<(u64, u64)>,
     edits: Writing<Document>,
-    /// The file of a window that ended early that is offered, and those with which the user goes on.
+    /// The recovered file that is being offered, and those that the user has accepted.
     offered: Option<PathBuf>,
     answered: Vec<PathBuf>,
-    /// The film of the last window is read, and must not be replaced before.
+    /// Whether the last window's film is still being read and must not be overwritten.
     pub is_restoring: bool,
 }
 
 impl Autosave {
-    /// Edits are saved in `directory` at once, and films that took longer than `every` each `every`. What the last window
-    /// was at is returned if this one goes on with it; if the last one ended early, it is kept otherwise.
+    /// Saves edits in `directory` at once, and films of renders longer than `every` at that interval. Returns the last
+    /// window's document if `goes_on`; otherwise, if that window crashed, its files are kept.
     pub fn new(directory: Option<&Path>, every: Duration, goes_on: bool) -> (Self, Last) {
         let claimed = directory.and_then(Place::claim);
         let mut last = Last::default();
@@ -194,8 +195,8 @@ impl Autosave {
         (autosave, last)
     }
 
-    /// The next file of windows that ended early about which the user has said nothing yet, newest first: its document, and
-    /// samples per pixel if it is a film.
+    /// The newest recovered file that the user has not decided about: its document, and the samples per pixel if it is a
+    /// film.
     pub fn offer(&mut self) -> Option<(Document, Option<u64>)> {
         let entries = fs::read_dir(&self.place.as_ref()?.directory).ok()?;
         let is_left = |path: &PathBuf| {
@@ -213,29 +214,29 @@ impl Autosave {
         Some(found)
     }
 
-    /// Whether the user goes on with this file of a window that ended early.
+    /// Whether the user has accepted this recovered file.
     pub fn is_answered(&self, path: &Path) -> bool {
         self.answered.iter().any(|answered| answered == path)
     }
 
-    /// The user goes on with the file that was offered. It is deleted when this window ends in order.
+    /// Accepts the offered file, which is deleted when this window exits cleanly.
     pub fn take_offered(&mut self) -> Option<PathBuf> {
         let path = self.offered.take()?;
         self.answered.push(path.clone());
         Some(path)
     }
 
-    /// The user wants the file deleted that was offered.
+    /// Deletes the offered file.
     pub fn delete_offered(&mut self) {
         self.offered.take().into_iter().for_each(|path| drop(fs::remove_file(path)));
     }
 
-    /// Whether the last try to write something has failed.
+    /// Whether the last write failed.
     pub fn has_failed(&self) -> bool {
         self.films.has_failed || self.edits.has_failed
     }
 
-    /// Saves what has been edited, and the film if it is time. Returns why something could not be written, once.
+    /// Saves new edits, and the film if it is due. Reports each failure once.
     pub fn follow(
         &mut self,
         context: &Context,
@@ -253,7 +254,7 @@ impl Autosave {
         if self.is_restoring { told } else { self.follow_film(context, document, tracing).or(told) }
     }
 
-    /// Has the film written if it is time. The render thread only copies it.
+    /// Writes the film in the background if it is due. The render thread only copies it.
     fn follow_film(&mut self, context: &Context, document: &Document, tracing: &Tracing) -> Option<String> {
         let every = self.every;
         let told = self.films.follow(|took| every.max(took * SHARE));
@@ -266,7 +267,7 @@ impl Autosave {
         }
         let (path, describe) =
             (place.film(), describer(document, tracing.main.status(), tracing.seconds_before));
-        // A film that is gone before it is copied is no failure.
+        // The film may be gone before it is copied; that is not a failure.
         let answer = self.films.outcomes.answer(context);
         tracing.main.inspect(move |film| {
             let write = move |film: &Film| write(&path, film, &describe(film));
@@ -278,7 +279,7 @@ impl Autosave {
         told
     }
 
-    /// Saves edits and film at the end of the window. Where it has no place of its own, a panic saves the film elsewhere.
+    /// Saves edits and film on exit. Without a lock, a panic saves the film elsewhere.
     pub fn end(&mut self, model: &Model, changes: &Changes, tracing: &mut Tracing) {
         let _ = (self.films.outcomes.wait(), self.edits.outcomes.wait());
         let is_panic = std::thread::panicking();

@@ -1,4 +1,4 @@
-//! Decides which stage a picture shows, and whether it is right or which mistake explains it.
+//! Finds the stage that a picture shows, and decides whether it is right or which mistake explains it.
 
 use super::Mine;
 use super::hypothesis::{Compared, Hypothesis, Mistake, Rendered, Rest, Slope, Studio, compare, rough};
@@ -25,35 +25,35 @@ const TINY: u64 = 16;
 /// Mistakes rendered in full size.
 const REFINED: usize = 6;
 
-/// None are if the first comparison leaves more than this share of the squared error.
+/// A mistake that leaves more than this share of the squared error is not rendered in full size.
 const HOPELESS: f64 = 0.7;
 
-/// A guess is worth its name if it leaves less than this share of the right picture's squared error.
+/// A mistake is offered as a guess if it leaves less than this share of the right picture's squared error.
 const EXPLAINED: f64 = 0.3;
 
-/// A hypothesis is wrong if a direction leads so far from it towards the reader's picture, in so many deviations.
+/// A hypothesis is rejected if another one leads this far from it towards the reader's picture, significantly.
 const LEADS: Slope = Slope { at: 0.4, deviations: 5.0 };
 
-/// The same for one that leads nearly all the way.
+/// As above, for one that leads nearly all the way.
 const LEADS_FAR: Slope = Slope { at: 0.6, deviations: 4.0 };
 
-/// The same for a mistake that is worth a picture in full size.
+/// As above, to render a mistake in full size.
 const LEADS_ROUGHLY: Slope = Slope { at: 0.15, deviations: 3.0 };
 
-/// The same for directions between pictures that differ only in how they are written, because rounding leads halfway.
+/// As above, between pictures that differ only in their encoding, because rounding leads halfway.
 const LEADS_IN_BYTES: f64 = 0.6;
 
-/// The same for shifts, in pixels, and for blur, in squares of pixels.
+/// As above, for shifts (pixels) and for blur (pixels squared).
 const SHIFTED: f64 = 0.2;
 const BLURRED: f64 = 0.15;
 
-/// Mistakes whose pictures leave so much more than the best one are not alike, in display values squared.
+/// Mistakes whose misfits differ by less than this give the same picture; display values squared.
 const ALIKE: f64 = 5e-6;
 
-/// Smoothed noise is only told from other differences if no more than this is left, in display values squared.
+/// Largest misfit at which smoothed noise can be recognised; display values squared.
 const NEARLY: f64 = 3e-4;
 
-/// Fewer samples per pixel than this are too few to tell noise from a fault.
+/// Fewest samples per pixel at which a fault can be told from noise.
 const SAMPLES_LEAST: f64 = 8.0;
 
 /// Stages judged when the stage is unknown.
@@ -62,7 +62,7 @@ const CANDIDATES: usize = 4;
 /// Root mean square difference below which a stage counts as recognised, display values.
 const FOUND: f64 = 0.03;
 
-/// Stages that differ by so much more than the nearest one are not judged.
+/// Stages whose difference exceeds the least one by more than this are not judged.
 const NEAR: f64 = 0.006;
 
 /// Least difference between a pixel's neighbours at an edge, linear radiance.
@@ -75,9 +75,9 @@ const CHANGED: f64 = 0.0015;
 pub struct Finding {
     pub stage: &'static Stage,
     pub right: Compared,
-    /// The mistake, or the other way to be right; `None` if the picture is right, or nothing explains it.
+    /// The mistake, or the accepted variant; `None` if the picture equals ours, or nothing explains it.
     pub mistake: Option<Compared>,
-    /// Whether the right picture, or the one with the mistake, leaves nothing but noise.
+    /// Whether the right picture, or the one with the mistake, leaves only noise.
     pub is_sure: bool,
     /// Other mistakes that explain the picture as well.
     pub alike: Vec<&'static Mistake>,
@@ -96,7 +96,7 @@ impl Finding {
         self.mistake.as_ref()?.hypothesis.mistake
     }
 
-    /// Whether the picture is right for its section, though it is not ours.
+    /// Whether the picture is right for its section, though it differs from ours.
     pub fn is_other_right(&self) -> bool {
         self.is_sure && self.named().is_some_and(|mistake| mistake.is_right_in(self.stage.section))
     }
@@ -125,7 +125,7 @@ impl Finding {
     }
 }
 
-/// Judges a picture, of `stage` if it is known. `say` is told what is being tried.
+/// Judges a picture, of `stage` if that is known. Calls `say` with each thing that it tries.
 pub fn judge(mine: &Mine, stage: Option<&'static Stage>, mut say: impl FnMut(String)) -> Result<Finding> {
     if let Some(stage) = stage {
         return judge_of(mine, stage, &mut say);
@@ -209,7 +209,7 @@ fn judge_among(
     Ok(Some(best))
 }
 
-/// As [`judge`], and tries first what was found last.
+/// As [`judge`], but tries the last finding first.
 pub fn judge_again(
     mine: &Mine,
     stage: Option<&'static Stage>,
@@ -238,7 +238,7 @@ struct Trial<'a> {
     right: Compared,
 }
 
-/// A hypothesis that may explain the picture, and the picture as it then is.
+/// A hypothesis that may explain the picture, and the picture decoded accordingly.
 struct Candidate {
     found: Compared,
     seen: Seen,
@@ -265,7 +265,7 @@ impl<'a> Trial<'a> {
         self.finding_of(|_| true)
     }
 
-    /// The finding among the right picture and the mistakes that are wanted.
+    /// The best of the right picture and the mistakes that `is_wanted` accepts.
     fn finding_of(mut self, is_wanted: impl Fn(Option<&Mistake>) -> bool) -> Result<Finding> {
         let mut candidates = vec![Candidate { found: self.right.clone(), seen: self.seen.clone() }];
         for (hypothesis, mask) in self.screened(is_wanted)? {
@@ -294,7 +294,7 @@ impl<'a> Trial<'a> {
         let grain = grain(&nearest.seen, &nearest.found);
         let is_near = nearest.found.misfit < NEARLY;
         let grain = grain.map(|grain| Grain { is_smoothed: grain.is_smoothed && is_near, ..grain });
-        // Of a stage that does not fit, the noise tells nothing.
+        // If the stage does not fit, the noise says nothing.
         let grain = grain.filter(|grain| is_near || grain.samples >= SAMPLES_LEAST);
         // The sky, which has no noise, is most of what is compared.
         let grain = grain.filter(|_| self.mine.ignored.is_none());
@@ -326,7 +326,7 @@ impl<'a> Trial<'a> {
             }
             return Ok(finding);
         }
-        // Random numbers are not those of ours, so this one is never sure.
+        // Every generator gives another picture, so this one is never sure.
         finding.is_sure = false;
         let shared = applying_to(self.studio.recipe()).find(|mistake| mistake.id == SHARED);
         if let Some(shared) = shared.filter(|shared| is_shared(&self.seen, &self.right, shared)) {
@@ -341,7 +341,7 @@ impl<'a> Trial<'a> {
         Ok(finding)
     }
 
-    /// Whether the file means the same, written so.
+    /// Whether the file decodes to the same picture with this encoding.
     fn is_as_right(&self, written: &Written) -> bool {
         let seen = self.seen(written);
         let is_same = |(a, b): (&f64, &f64)| a == b || a.is_nan() && b.is_nan();
@@ -349,14 +349,14 @@ impl<'a> Trial<'a> {
         seen.size == self.seen.size && a.iter().zip(b).all(is_same)
     }
 
-    /// A picture, with the right one where it was not rendered.
+    /// A half of a picture, filled with the right one where the mask left it out.
     fn filled(&self, rendered: &[[f64; 3]], half: usize) -> Vec<[f64; 3]> {
         let right = &self.right.rendered.halves[half];
         let pixels = rendered.iter().zip(right);
         pixels.map(|(pixel, right)| if pixel[0].is_nan() { *right } else { *pixel }).collect()
     }
 
-    /// The mistakes that may explain the picture, by small pictures, and where each changes the right picture.
+    /// The mistakes that may explain the picture, judged by small renders, each with a mask of the pixels that it changes.
     fn screened(
         &mut self,
         is_wanted: impl Fn(Option<&Mistake>) -> bool,
@@ -423,7 +423,7 @@ impl<'a> Trial<'a> {
     }
 }
 
-/// The mistake whose picture is another with other random numbers.
+/// The mistake whose picture depends on the random numbers.
 const SHARED: &str = "same-seed";
 
 /// Whether a candidate leaves only noise, and nothing leads from it towards the reader's picture.
@@ -486,7 +486,7 @@ fn fits(candidates: &[Candidate], index: usize) -> bool {
     })
 }
 
-/// The linear values that a picture has if it was written in one way and is read in another with the same curve.
+/// The linear values of a picture that was written with one encoding and is read with another of the same curve.
 fn as_read(rendered: &Rendered, from: &Written, to: &Written, [width, height]: [u32; 2]) -> Rendered {
     if from == to {
         return rendered.clone();
@@ -502,7 +502,7 @@ fn as_read(rendered: &Rendered, from: &Written, to: &Written, [width, height]: [
     })
 }
 
-/// Changes each value by those at places beside it; the border stays.
+/// Maps each value and its neighbours; the border is unchanged.
 fn neighbours(
     pixels: &[[f64; 3]],
     width: usize,
@@ -523,7 +523,7 @@ fn neighbours(
     (0..pixels.len()).map(at).collect()
 }
 
-/// How much smaller the first pictures are: a common divisor of both sides, if there is a suitable one.
+/// The factor by which the first pictures are smaller: a common divisor of both sides, if a suitable one exists.
 fn factor([width, height]: [u32; 2], antialiasing: bool) -> u32 {
     if !antialiasing {
         return 1;
@@ -604,7 +604,7 @@ fn candidates(mine: &Mine, is_thorough: bool, mut say: impl FnMut(String)) -> Re
         let mut studio = Studio::new(stage.recipe(), [mine.width, mine.height])?;
         let right = Hypothesis::right(studio.recipe());
         let recipe = &right.recipe.clone();
-        // Without antialiasing, a smaller picture has coarser steps than the reader's, made smaller.
+        // Without antialiasing, a small render has coarser edges than a reduced one.
         let is_exact = !recipe.rules.antialiasing;
         let mut rendered = |hypothesis: &Hypothesis| -> Result<Rendered> {
             if is_exact {
@@ -650,7 +650,7 @@ fn candidates(mine: &Mine, is_thorough: bool, mut say: impl FnMut(String)) -> Re
         }
         ranked.push((least, stage));
     }
-    // Of stages with equal pictures, prefer the one with the closer width.
+    // If stages have equal pictures, prefer the one with the closer width.
     let distance = |stage: &Stage| stage.setup.width.abs_diff(mine.width);
     ranked
         .sort_by(|(a, stage_a), (b, stage_b)| a.total_cmp(b).then(distance(stage_a).cmp(&distance(stage_b))));
