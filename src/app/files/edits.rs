@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// So many steps can be undone in the next window.
+/// Undo steps that the next window restores.
 pub const STEPS: usize = 10;
 
 #[derive(Default, Serialize, Deserialize)]

@@ -69,7 +69,7 @@ pub struct Remembered {
     pub recent: Vec<PathBuf>,
     /// The picture of another program that is being checked.
     pub mine: Option<PathBuf>,
-    /// The ids of the stages of which such a picture was right.
+    /// The ids of the stages whose picture by another program was right.
     pub done: BTreeSet<String>,
     /// The card with the first steps was closed: it does not reopen automatically.
     pub is_greeted: bool,

@@ -13,7 +13,7 @@ const LIFETIME: Duration = Duration::from_secs(4);
 
 const WIDTH: f32 = 320.0;
 
-/// So many messages are shown at a time.
+/// Messages shown at a time.
 const SHOWN: usize = 2;
 
 struct Toast {

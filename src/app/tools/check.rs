@@ -14,14 +14,15 @@ use crate::pictures::check::{
     Answer, AnswerKind, Damage, Finding, Mine, POLL_INTERVAL, Watched, judge_again, pictures, stages,
 };
 use crate::stages::Stage;
+use eframe::egui::text::LayoutJob;
 use eframe::egui::{
-    self, Align2, Color32, Label, Rect, RichText, Sense, Stroke, StrokeKind, TextureOptions, Ui, Vec2,
-    WidgetInfo, vec2,
+    self, Align, Align2, Color32, FontSelection, Label, Rect, RichText, Sense, Stroke, StrokeKind,
+    TextureOptions, Ui, Vec2, WidgetInfo, vec2,
 };
 use std::path::{Path, PathBuf};
 use std::thread::{Builder, sleep};
 
-/// What was found in a picture as its file then was.
+/// The finding for one state of the file.
 pub struct Checked {
     pub answer: Answer,
     /// Rows of the file so far, and of the picture.
@@ -188,7 +189,7 @@ impl Check {
                 );
             }
             if let Some(remedy) = &answer.remedy {
-                paragraph(ui, "What to change", &format!("{remedy}."));
+                change(ui, remedy);
             }
             for Damage { title, remedy } in &answer.damages {
                 paragraph(ui, "The file, too", &format!("{title}: {remedy}."));
@@ -371,6 +372,37 @@ fn verdict(ui: &mut Ui, answer: &Answer) {
     ui.add(Label::new(RichText::new(&answer.title).heading().color(color)).wrap());
     let text = RichText::new(format!("{}.", answer.explanation)).line_height(Some(20.0));
     ui.add(Label::new(text).wrap());
+}
+
+/// What to change: code stands between backticks, and long code on a line of its own.
+fn change(ui: &mut Ui, remedy: &str) {
+    const LONG: usize = 16;
+    ui.add_space(4.0);
+    small(ui, "What to change");
+    ui.add_space(-4.0);
+    let colours = theme::colours(ui);
+    let mut words = LayoutJob::default();
+    let parts: Vec<&str> = remedy.split('`').collect();
+    let is_long = |index: usize| index % 2 == 1 && parts.get(index).is_some_and(|code| code.len() > LONG);
+    for (index, part) in parts.iter().enumerate() {
+        let text = match index % 2 {
+            1 if is_long(index) => RichText::new(format!("{part}\n")).monospace().color(colours.accent),
+            1 => RichText::new(*part).monospace(),
+            // A line of code needs no comma after it.
+            _ => {
+                let before = if index > 0 && is_long(index - 1) {
+                    part.trim_start_matches([',', ';', ' '])
+                } else {
+                    part
+                };
+                let end = if is_long(index + 1) && !before.is_empty() { "\n" } else { "" };
+                RichText::new(format!("{}{end}", if end.is_empty() { before } else { before.trim_end() }))
+            }
+        };
+        let text = text.line_height(Some(20.0));
+        text.append_to(&mut words, ui.style(), FontSelection::Default, Align::LEFT);
+    }
+    ui.add(Label::new(words).wrap());
 }
 
 /// Buttons that lead to the section of the mistake, or on.

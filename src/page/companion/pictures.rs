@@ -58,7 +58,16 @@ fn entry(picture: Picture, title: &str, remedy: &str, uses: &mut Uses) -> Markup
     let shown = html! {
         li {
             (picture.img(&title))
-            p { strong { (title) "." } @if !remedy.is_empty() { " Remedy: " (typographic(remedy)) "." } }
+            p {
+                strong { (title) "." }
+                @if !remedy.is_empty() {
+                    " Remedy: "
+                    @for (index, part) in remedy.split('`').enumerate() {
+                        @if index % 2 == 1 { code { (part) } } @else { (typographic(part)) }
+                    }
+                    "."
+                }
+            }
         }
     };
     uses.pictures.push(picture);

@@ -252,7 +252,7 @@ pub fn rough(seen: &Seen, mut hypothesis: Hypothesis, rendered: Rendered) -> (Hy
     for (index, (seen, expected)) in
         seen.values.as_flattened().iter().zip(expected.as_flattened()).enumerate()
     {
-        // The noise of the render is no error.
+        // The render's own noise does not count as an error.
         let noise = 0.25 * (halves[0][index] - halves[1][index]).powi(2);
         // Displayed values as the reader sees them; our noise would weigh itself.
         let square = ((seen - expected).powi(2) - noise) / (4.0 * seen.max(0.02));
@@ -362,7 +362,7 @@ fn misfit(test: &BlockTest, values: &[[f64; 3]], expected: &[[f64; 3]], width: u
             count += 1;
         }
     }
-    // Of a picture of which nothing is known, nothing is explained.
+    // If nothing is known of a picture, nothing is explained.
     if count == 0 { f64::INFINITY } else { sum / count as f64 }
 }
 

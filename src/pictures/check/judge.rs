@@ -646,7 +646,7 @@ fn candidates(mine: &Mine, is_thorough: bool, mut say: impl FnMut(String)) -> Re
                 }
             };
             let (_, _, misfit) = rough(seen, hypothesis, rendered);
-            least = least.min(misfit.max(0.0).sqrt());
+            least = least.min(misfit);
         }
         ranked.push((least, stage));
     }
@@ -654,9 +654,10 @@ fn candidates(mine: &Mine, is_thorough: bool, mut say: impl FnMut(String)) -> Re
     let distance = |stage: &Stage| stage.setup.width.abs_diff(mine.width);
     ranked
         .sort_by(|(a, stage_a), (b, stage_b)| a.total_cmp(b).then(distance(stage_a).cmp(&distance(stage_b))));
-    if ranked.first().is_some_and(|(least, _)| *least < FOUND) {
-        let limit = 1.5 * ranked[0].0 + NEAR;
-        ranked.retain(|(least, _)| *least < limit);
+    let difference = |(misfit, _): &(f64, _)| misfit.max(0.0).sqrt();
+    if ranked.first().is_some_and(|nearest| difference(nearest) < FOUND) {
+        let limit = 1.5 * difference(&ranked[0]) + NEAR;
+        ranked.retain(|stage| difference(stage) < limit);
         let mut near: Vec<_> = ranked.into_iter().map(|(_, stage)| stage).take(CANDIDATES).collect();
         // What 9.3 shows as a fault is right in the sections before it.
         if near.iter().any(|stage| stage.setup.rules.surface == SurfaceRule::Acne) {

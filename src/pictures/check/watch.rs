@@ -1,4 +1,4 @@
-//! A picture that another program is writing: read when it changes, and never judged in a torn state.
+//! Watches a picture that another program writes: judged after each change, and never while a row is half written.
 
 use super::{Finding, Lines, Mine, judged};
 use crate::cli::CheckOptions;
@@ -12,10 +12,10 @@ use std::time::{Duration, Instant, SystemTime};
 /// How often a file is looked at.
 pub const POLL_INTERVAL: Duration = Duration::from_millis(200);
 
-/// A file that ends early is at its end if nothing is added for so long.
+/// A file that ends early counts as truncated after this long without a change.
 const SETTLED: Duration = Duration::from_secs(3);
 
-/// Least share of the rows that is judged while a picture grows.
+/// Share of the rows from which on a growing picture is judged.
 const ROWS_LEAST: f64 = 0.4;
 
 /// A file's length and modification time, which change with its content.

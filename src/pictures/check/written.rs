@@ -29,7 +29,7 @@ pub enum Order {
     Flipped,
     Mirrored,
     Rotated,
-    /// Moved to the right and down by so many pixels.
+    /// Moved to the right and down by these numbers of pixels.
     Moved(i8, i8),
     /// Column by column, though the header has the right size.
     Columns,
@@ -105,7 +105,7 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// What the file shows if it was written so. `expected` says which zeros are overflown whites.
+    /// The picture of a file with this encoding. `expected` tells which zeros are whites that wrapped around.
     pub fn of(mine: &Mine, written: &Written, expected: impl Fn(usize, usize) -> f64) -> Seen {
         let file = [mine.width as usize, mine.height as usize];
         let mut size = [mine.width, mine.height];
