@@ -103,7 +103,11 @@ impl Finding {
             section: None,
             stage: Some(self.stage),
             evidence: self.evidence(mine),
-            places: if self.right.differing > 0.0 { apart(&self.right.places) } else { Vec::new() },
+            // If most of it differs, no place tells more than another.
+            places: match self.right.differing {
+                share if share > 0.0 && share < 0.5 => apart(&self.right.places),
+                _ => Vec::new(),
+            },
             damages: mine.damages.clone(),
         };
         if self.ignored.is_some() {
