@@ -11,7 +11,7 @@ use crate::app::toolkit::widgets::{
 use crate::app::toolkit::{Answers, Texture, caught, overlay, theme};
 use crate::numbers::heat::HeatScale;
 use crate::pictures::check::{
-    Answer, AnswerKind, Damage, Finding, Mine, POLL_INTERVAL, Watched, judge_again, pictures, stages,
+    Answer, AnswerKind, Damage, Finding, Mine, POLL_INTERVAL, Watched, judge_again, pictures,
 };
 use crate::stages::Stage;
 use eframe::egui::text::LayoutJob;
@@ -159,7 +159,8 @@ impl Check {
         let name = self.name();
         let Some(Checked { answer, rows: [rows, height], compared }) = &self.shown else {
             scrolling(ui, |ui| {
-                hint(ui, &format!("Comparing {name} with every stage and every known mistake…"));
+                let what = self.chosen.map_or("every section", |stage| stage.section);
+                hint(ui, &format!("Comparing {name} with {what} and the known mistakes…"));
                 ui.horizontal(|ui| {
                     if ui.button("Stop").clicked() {
                         self.close();
@@ -351,7 +352,7 @@ fn section(ui: &mut Ui, answer: &Answer, chosen: Option<&'static Stage>) -> Opti
         if entry(ui, chosen.is_none(), About::new("Find it", "Compares it with all sections")) {
             choice = Some(None);
         }
-        for stage in stages() {
+        for stage in Stage::ALL {
             let name = format!("{} {}", stage.section, stage.title);
             if entry(ui, chosen == Some(stage), About::new(&name, "")) {
                 choice = Some(Some(stage));

@@ -138,7 +138,7 @@ pub fn judge(mine: &Mine, stage: Option<&'static Stage>, mut say: impl FnMut(Str
     if let Some(found) = found.as_ref().filter(|found| is_settled(found)) {
         return Ok(found.clone());
     }
-    for stage in stages().filter(|stage| is_random(stage)) {
+    for stage in Stage::ALL.iter().filter(|stage| is_random(stage)) {
         let last = judge_of(mine, stage, &mut say)?;
         if last.is_sure {
             return Ok(last);
@@ -586,11 +586,6 @@ fn all_mistakes(recipe: &Recipe) -> Vec<Hypothesis> {
     applying_to(recipe).filter(is_compared).flat_map(|mistake| mistake.pictures(recipe)).collect()
 }
 
-/// The stages that can be checked: all.
-pub fn stages() -> impl Iterator<Item = &'static Stage> {
-    Stage::ALL.iter()
-}
-
 /// The stages that the picture resembles most, as rendered right or written wrongly, or, if `is_thorough`, with any
 /// mistake.
 fn candidates(mine: &Mine, is_thorough: bool, mut say: impl FnMut(String)) -> Result<Vec<&'static Stage>> {
@@ -600,7 +595,7 @@ fn candidates(mine: &Mine, is_thorough: bool, mut say: impl FnMut(String)) -> Re
     let what = if is_thorough { "the mistakes of all stages" } else { "all stages" };
     say(format!("comparing with {what}"));
     let mut known: Vec<(Written, Seen)> = Vec::new();
-    for stage in stages().filter(|stage| !is_random(stage)) {
+    for stage in Stage::ALL.iter().filter(|stage| !is_random(stage)) {
         let mut studio = Studio::new(stage.recipe(), [mine.width, mine.height])?;
         let right = Hypothesis::right(studio.recipe());
         let recipe = &right.recipe.clone();
@@ -661,7 +656,7 @@ fn candidates(mine: &Mine, is_thorough: bool, mut say: impl FnMut(String)) -> Re
         let mut near: Vec<_> = ranked.into_iter().map(|(_, stage)| stage).take(CANDIDATES).collect();
         // What 9.3 shows as a fault is right in the sections before it.
         if near.iter().any(|stage| stage.setup.rules.surface == SurfaceRule::Acne) {
-            let before = stages().filter(|stage| matches!(stage.section, "9.1" | "9.2"));
+            let before = Stage::ALL.iter().filter(|stage| matches!(stage.section, "9.1" | "9.2"));
             let missing: Vec<_> = before.filter(|stage| !near.contains(stage)).collect();
             near.extend(missing);
         }

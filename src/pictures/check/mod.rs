@@ -18,7 +18,7 @@ mod written;
 pub use crate::job::output::Damage;
 pub use answer::{Answer, AnswerKind, Section};
 pub use hypothesis::{Compared, Hypothesis, Mistake, Studio};
-pub use judge::{Finding, judge, judge_again, stages};
+pub use judge::{Finding, judge, judge_again};
 pub use mine::Mine;
 pub use mistakes::MISTAKES;
 pub use watch::{POLL_INTERVAL, Watched};

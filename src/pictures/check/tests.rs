@@ -99,7 +99,7 @@ fn plain_tracer_matches_fast_tracer() {
         let rules = stage.setup.rules;
         rules.shading != Shading::ImageGradient && rules.surface != SurfaceRule::Acne
     };
-    for stage in stages().filter(is_traced) {
+    for stage in Stage::ALL.iter().filter(is_traced) {
         let mut studio = Studio::new(stage.recipe(), [96, 54]).unwrap();
         let right = Hypothesis::right(studio.recipe());
         let plain = Hypothesis { steps: Some(Steps::OF_THE_BOOK), ..right.clone() };
@@ -243,7 +243,7 @@ fn a_slope_tells_how_far_a_direction_leads() {
 
 #[test]
 fn the_right_picture_of_every_stage_is_right_without_the_stage() {
-    for stage in stages() {
+    for stage in Stage::ALL {
         let mut studio = Studio::new(stage.recipe(), [160, 90]).unwrap();
         let mut right = Hypothesis::right(studio.recipe());
         right.recipe.settings.seed = 1;
