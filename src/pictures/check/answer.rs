@@ -164,18 +164,17 @@ impl Finding {
     /// The answer if the noise does not allow a verdict.
     fn too_little(&self, answer: &mut Answer) {
         answer.kind = AnswerKind::CannotCheck;
-        let is_smoothed = self.grain.is_some_and(|grain| grain.is_smoothed);
-        (answer.title, answer.remedy) = if is_smoothed {
-            (
-                "This is not the file that a ray tracer writes: its noise has been smoothed".to_owned(),
-                Some("Check the PPM or PNG that your program writes: JPEG, scaling, blur and filters change it".to_owned()),
-            )
-        } else {
-            (
+        let (title, remedy) = match self.grain.and_then(|grain| grain.altered) {
+            Some(altered) => (
+                format!("This is not the file that a ray tracer writes: {altered}"),
+                "Check the PPM or PNG that your program writes: JPEG, palettes, scaling and filters change it",
+            ),
+            None => (
                 "It is too noisy to judge".to_owned(),
-                Some("Render it with at least 10 samples per pixel; 100 show small faults, too".to_owned()),
-            )
+                "Render it with at least 10 samples per pixel; 100 show small faults, too",
+            ),
         };
+        (answer.title, answer.remedy) = (title, Some(remedy.to_owned()));
         let likely = format!("It looks like section {}", self.stage.section);
         answer.explanation = match self.named() {
             _ if self.right.misfit < NEARLY_RIGHT => format!("{likely}, and no fault can be seen"),
@@ -230,7 +229,7 @@ impl Finding {
             evidence.extend(measured(&self.right, mine));
         }
         if let Some(grain) =
-            self.grain.filter(|grain| !grain.is_smoothed && (1.0..5000.0).contains(&grain.samples))
+            self.grain.filter(|grain| grain.altered.is_none() && (1.0..5000.0).contains(&grain.samples))
         {
             evidence.push(format!("Its noise is that of about {:.0} samples per pixel", grain.samples));
         }

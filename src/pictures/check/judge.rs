@@ -53,7 +53,7 @@ const BLURRED: f64 = 0.15;
 /// Mistakes whose misfits differ by less than this give the same picture; display values squared.
 const ALIKE: f64 = 5e-6;
 
-/// Largest misfit at which smoothed noise can be recognised; display values squared.
+/// Largest misfit at which a changed picture can be recognised; display values squared.
 const NEARLY: f64 = 3e-4;
 
 /// Fewest samples per pixel at which a fault can be told from noise.
@@ -104,9 +104,9 @@ impl Finding {
         self.is_sure && self.named().is_some_and(|mistake| mistake.is_right_in(self.stage.section))
     }
 
-    /// Whether the reader's noise is too strong, or too smooth, for a verdict.
+    /// Whether the reader's noise is too strong for a verdict, or something has changed the picture.
     pub fn is_too_little(&self) -> bool {
-        let grain = |grain: &Grain| grain.is_smoothed || grain.samples < SAMPLES_LEAST;
+        let grain = |grain: &Grain| grain.altered.is_some() || grain.samples < SAMPLES_LEAST;
         !self.is_sure && self.grain.as_ref().is_some_and(grain)
     }
 
@@ -300,14 +300,14 @@ impl<'a> Trial<'a> {
         let right = fitting.iter().find(|index| of(index).is_none());
         let chosen = right.or_else(|| fitting.iter().find(is_right)).or(fitting.first()).copied();
         let nearest = &candidates[chosen.unwrap_or(0)];
-        let grain = grain(&nearest.seen, &nearest.found);
+        let grain = grain(self.mine, &nearest.seen, &nearest.found);
         let is_near = nearest.found.misfit < NEARLY;
-        let grain = grain.map(|grain| Grain { is_smoothed: grain.is_smoothed && is_near, ..grain });
+        let grain = grain.map(|grain| Grain { altered: grain.altered.filter(|_| is_near), ..grain });
         // If the stage does not fit, the noise says nothing.
         let grain = grain.filter(|grain| is_near || grain.samples >= SAMPLES_LEAST);
         // The sky, which has no noise, is most of what is compared.
         let grain = grain.filter(|_| self.mine.ignored.is_none());
-        let is_smoothed = grain.is_some_and(|grain| grain.is_smoothed);
+        let is_altered = grain.is_some_and(|grain| grain.altered.is_some());
         let mut finding = Finding {
             stage: self.stage,
             right: self.right.clone(),
@@ -318,7 +318,7 @@ impl<'a> Trial<'a> {
             ignored: None,
         };
         let named = chosen.and_then(|chosen| of(&chosen));
-        if let Some(chosen) = chosen.filter(|_| !is_smoothed) {
+        if let Some(chosen) = chosen.filter(|_| !is_altered) {
             finding.mistake = named.map(|_| candidates[chosen].found.clone());
             if named.is_some_and(|named| !named.is_right_in(section)) {
                 let limit = 3.0 * candidates[chosen].found.misfit.max(0.0) + ALIKE;

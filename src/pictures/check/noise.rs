@@ -1,22 +1,31 @@
-//! What the noise of a picture tells: how many samples it has, whether something has smoothed it, and whether all pixels
-//! share their random numbers.
+//! What the noise of a picture tells: how many samples it has, whether something has changed the picture since, and whether
+//! all pixels share their random numbers.
 
+use super::Mine;
 use super::hypothesis::{Compared, Hypothesis, Mistake, blocks_of, pixels_of};
 use super::tracer::Tracer;
 use super::written::Seen;
 use crate::numbers::statistics::blocks::Block;
+use std::collections::HashSet;
 
 /// Ratio of differences two pixels apart to those one pixel apart, squared, above which noise has been smoothed. It is 1
 /// for independent pixels, and 4 for a slope.
 const SMOOTHED: f64 = 1.25;
+
+/// Squares of 8 x 8 pixels, which JPEG treats by themselves, differ at their borders by this much more than at any other
+/// eighth column and row.
+const SQUARES: f64 = 1.15;
+
+/// Most colours of a palette, and how many times as many our picture must have.
+const PALETTE: [usize; 2] = [256, 4];
 
 /// The grain of a picture beside the right one.
 #[derive(Clone, Copy, Debug)]
 pub struct Grain {
     /// Samples per pixel that give such noise.
     pub samples: f64,
-    /// Whether neighbouring pixels share noise.
-    pub is_smoothed: bool,
+    /// What shows that this is not the file that a ray tracer has written.
+    pub altered: Option<&'static str>,
 }
 
 /// The part of a difference that noise makes.
@@ -88,7 +97,7 @@ fn field(blocks: &[(Block, [f64; 3])], width: usize, value: impl Fn(usize, usize
 }
 
 /// The grain of what is seen, if the picture that comes closest has noise.
-pub fn grain(seen: &Seen, right: &Compared) -> Option<Grain> {
+pub fn grain(mine: &Mine, seen: &Seen, right: &Compared) -> Option<Grain> {
     let blocks = noisy(right);
     if blocks.len() < 8 {
         return None;
@@ -104,8 +113,44 @@ pub fn grain(seen: &Seen, right: &Compared) -> Option<Grain> {
         / blocks.len() as f64;
     // The difference of two independent pixels has twice the variance; three quarters of the pixels have a neighbour two
     // pixels to the right.
-    let spread = found.near / (2.0 * 0.75) - single / right.rendered.samples as f64;
-    Some(Grain { samples: single / spread.max(1e-9), is_smoothed: found.far > SMOOTHED * found.near })
+    let own = 2.0 * 0.75 * single / right.rendered.samples as f64;
+    let [near, far] = [found.near - own, found.far - own];
+    let altered = if far > SMOOTHED * near.max(0.1 * own) {
+        Some("its noise has been smoothed")
+    } else if has_squares(mine) {
+        Some("it has the squares of JPEG")
+    } else if has_palette(mine, &right.hypothesis.written.bytes_of(&mean, right.hypothesis.size())) {
+        Some("it has a palette of few colours")
+    } else {
+        None
+    };
+    Some(Grain { samples: 2.0 * 0.75 * single / near.max(1e-9), altered })
+}
+
+/// Whether pixels differ most at the borders of squares of 8 x 8.
+fn has_squares(mine: &Mine) -> bool {
+    let [width, rows] = [mine.width as usize, mine.rows as usize];
+    let is_most_at_borders = |[right, down]: [usize; 2]| {
+        let (mut sums, mut counts) = ([0_u64; 8], [1_u64; 8]);
+        for y in 0..rows.saturating_sub(down) {
+            for x in 0..width - right {
+                let [from, to] = [y * width + x, (y + down) * width + x + right].map(|at| mine.bytes[at]);
+                let place = if right > 0 { x } else { y } % 8;
+                sums[place] += (0..3).map(|c| u64::from(from[c].abs_diff(to[c]).min(24))).sum::<u64>();
+                counts[place] += 1;
+            }
+        }
+        let means: [f64; 8] = std::array::from_fn(|at| sums[at] as f64 / counts[at] as f64);
+        means[7] > SQUARES * means[..7].iter().copied().fold(0.0, f64::max)
+    };
+    is_most_at_borders([1, 0]) && is_most_at_borders([0, 1])
+}
+
+fn has_palette(mine: &Mine, ours: &[[u8; 3]]) -> bool {
+    let [most, times] = PALETTE;
+    let colours = |bytes: &[[u8; 3]]| bytes.iter().collect::<HashSet<_>>().len();
+    let found = colours(&mine.bytes);
+    found <= most && colours(ours) > times * found
 }
 
 /// Realisations of a picture whose pixels share their random numbers, with which the reader's is compared.
