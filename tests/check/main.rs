@@ -108,11 +108,18 @@ fn without_a_stage_no_answer_is_surely_wrong() {
         ("lambertian-gamma", "same-seed", 60),
         ("lambertian-gamma", "flipped-rows", 30),
         ("lambertian-gamma", "zero-t-min", 60),
+        ("lambertian-gamma", "half-pixel-down", 60),
+        ("defocus", "vfov-radians", 30),
     ];
     for (stage, mistake, samples) in planted {
         let finding = judge(&mine(stage, mistake, samples, 3), None, |_| {}).unwrap();
         let named = ids(&finding);
         assert!(!finding.is_sure || named.contains(&mistake), "{stage}, {mistake}: {named:?}");
+    }
+    // What changes most of the picture does not hide which stage it is.
+    for mistake in ["sky-reversed", "last-hit-wins"] {
+        let finding = judge(&mine("lambertian-gamma", mistake, 60, 3), None, |_| {}).unwrap();
+        assert!(finding.is_sure && ids(&finding).contains(&mistake), "{mistake}: {:?}", ids(&finding));
     }
 }
 

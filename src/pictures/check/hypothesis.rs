@@ -2,10 +2,12 @@
 
 use super::tracer::{Steps, Tracer};
 use super::written::{Seen, Written, reduced};
+use crate::job::output::Encoding;
 use crate::job::recipe::Recipe;
 use crate::job::render::{RenderSettings, Renderer, SamplerKind};
 use crate::numbers::statistics::blocks::{Block, BlockTest, Differences, Noise};
 use crate::render_cpu::{CpuOptions, CpuRenderer};
+use crate::stages::Transfer;
 use anyhow::Result;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
@@ -40,6 +42,11 @@ impl Mistake {
         let picture = |change: &fn(&mut Hypothesis)| {
             let mut picture = Hypothesis { mistake: Some(self), ..right.clone() };
             change(&mut picture);
+            picture.written.curve = match picture.written.curve {
+                Encoding::Gamma(1.0) => Encoding::Book(Transfer::Linear),
+                Encoding::Gamma(2.0) => Encoding::Book(Transfer::Gamma2),
+                curve => curve,
+            };
             let is_changed = picture.written != right.written
                 || picture.fit.is_some()
                 || !picture.is_right_before_writing(recipe);
@@ -248,12 +255,13 @@ pub fn rough(seen: &Seen, mut hypothesis: Hypothesis, rendered: Rendered) -> (Hy
     let rendered = fitted(seen, &mut hypothesis, rendered);
     let expected = hypothesis.written.predicted(seen, &rendered.mean());
     let (mut sum, mut count, mut known) = (0.0, 1e-9, 0.0);
-    let halves = rendered.halves.each_ref().map(|half| half.as_flattened());
+    let halves = rendered.halves.each_ref().map(|half| hypothesis.written.predicted(seen, half));
     for (index, (seen, expected)) in
         seen.values.as_flattened().iter().zip(expected.as_flattened()).enumerate()
     {
         // The render's own noise does not count as an error.
-        let noise = 0.25 * (halves[0][index] - halves[1][index]).powi(2);
+        let [a, b] = halves.each_ref().map(|half| half[index / 3][index % 3]);
+        let noise = 0.25 * (a - b).powi(2);
         // Displayed values as the reader sees them; our noise would weigh itself.
         let square = ((seen - expected).powi(2) - noise) / (4.0 * seen.max(0.02));
         known += f64::from(u8::from(seen.is_finite()));

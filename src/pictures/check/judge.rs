@@ -50,7 +50,7 @@ const LEADS_IN_BYTES: f64 = 0.6;
 const SHIFTED: f64 = 0.2;
 const BLURRED: f64 = 0.15;
 
-/// Mistakes whose misfits differ by less than this give the same picture; display values squared.
+/// Misfits below this are equal; display values squared.
 const ALIKE: f64 = 5e-6;
 
 /// Largest misfit at which a changed picture can be recognised; display values squared.
@@ -112,20 +112,25 @@ impl Finding {
 
     /// Ranks findings of different stages: lower is closer.
     fn rank(&self) -> (u8, f64) {
-        let found = self.mistake.as_ref().unwrap_or(&self.right);
-        let class = match self.is_sure {
-            true if self.mistake.is_none() => 0,
-            true if self.is_other_right() => 1,
-            true => 2,
-            false => 3,
-        };
-        (class, found.misfit)
+        let misfit = self.mistake.as_ref().unwrap_or(&self.right).misfit;
+        match self.is_sure {
+            true if self.mistake.is_none() => (0, misfit),
+            true if self.is_other_right() => (1, misfit),
+            // A mistake must leave clearly less than what is right elsewhere.
+            true => (1, alike_below(misfit)),
+            false => (2, misfit),
+        }
     }
 
     fn closeness(&self, other: &Finding) -> Ordering {
         let [(class, misfit), (their_class, their_misfit)] = [self.rank(), other.rank()];
         class.cmp(&their_class).then(misfit.total_cmp(&their_misfit))
     }
+}
+
+/// Pictures with misfits below this may be the same as one of this misfit.
+fn alike_below(misfit: f64) -> f64 {
+    3.0 * misfit.max(0.0) + ALIKE
 }
 
 /// Judges a picture, of `stage` if that is known. Calls `say` with each thing that it tries.
@@ -197,11 +202,12 @@ fn judge_among(
     let mut findings = findings.into_iter();
     let Some(mut best) = findings.next() else { return Ok(None) };
     if let Some(found) = best.mistake.as_ref().filter(|_| best.is_sure && !best.is_other_right()) {
-        let limit = 3.0 * found.misfit.max(0.0) + ALIKE;
+        let limit = alike_below(found.misfit);
         for other in findings {
             // The right picture of another stage may be meant.
             best.is_sure &= other.right.misfit >= limit;
-            let named = other.named().filter(|_| other.is_sure);
+            let is_as_close = other.mistake.as_ref().is_some_and(|found| found.misfit < limit);
+            let named = other.named().filter(|_| other.is_sure && is_as_close);
             let is_new = |other: &&Mistake| {
                 best.named().is_none_or(|named| named.id != other.id)
                     && !best.alike.iter().any(|known| known.id == other.id)
@@ -292,11 +298,16 @@ impl<'a> Trial<'a> {
             }
         }
         candidates.sort_by(|a, b| a.found.misfit.total_cmp(&b.found.misfit));
-        let fitting: Vec<bool> = (0..candidates.len()).map(|index| fits(&candidates, index)).collect();
+        let fitting: Vec<bool> =
+            (0..candidates.len()).map(|index| fits(&candidates, index, self.studio.recipe())).collect();
         let of = |index: &usize| candidates[*index].found.hypothesis.mistake;
         let fitting: Vec<usize> = (0..candidates.len()).filter(|index| fitting[*index]).collect();
         let section = self.stage.section;
-        let is_right = |index: &&usize| of(index).is_none_or(|mistake| mistake.is_right_in(section));
+        let limit = fitting.first().map_or(f64::INFINITY, |best| alike_below(candidates[*best].found.misfit));
+        let is_right = |index: &&usize| {
+            of(index).is_none_or(|mistake| mistake.is_right_in(section))
+                && candidates[**index].found.misfit < limit
+        };
         let right = fitting.iter().find(|index| of(index).is_none());
         let chosen = right.or_else(|| fitting.iter().find(is_right)).or(fitting.first()).copied();
         let nearest = &candidates[chosen.unwrap_or(0)];
@@ -321,7 +332,7 @@ impl<'a> Trial<'a> {
         if let Some(chosen) = chosen.filter(|_| !is_altered) {
             finding.mistake = named.map(|_| candidates[chosen].found.clone());
             if named.is_some_and(|named| !named.is_right_in(section)) {
-                let limit = 3.0 * candidates[chosen].found.misfit.max(0.0) + ALIKE;
+                let limit = alike_below(candidates[chosen].found.misfit);
                 let others = fitting
                     .iter()
                     .filter(|other| candidates[**other].found.misfit < limit)
@@ -395,6 +406,10 @@ impl<'a> Trial<'a> {
                 fine.push((hypothesis, None));
                 continue;
             }
+            // The mask of what is compared is for this shape.
+            if self.mine.ignored.is_some() && hypothesis.written.order.exchanges_sides() {
+                continue;
+            }
             if hypothesis.is_fine {
                 let mask = is_masked.then(|| edges.clone()).or_else(|| self.mine.compared(1));
                 fine.push((hypothesis, mask));
@@ -444,8 +459,9 @@ impl<'a> Trial<'a> {
 /// The mistake whose picture depends on the random numbers.
 const SHARED: &str = "same-seed";
 
-/// Whether a candidate leaves only noise, and nothing leads from it towards the reader's picture.
-fn fits(candidates: &[Candidate], index: usize) -> bool {
+/// Whether a candidate leaves only noise, and nothing leads from it towards the reader's picture. `recipe` is that of the
+/// right picture.
+fn fits(candidates: &[Candidate], index: usize, recipe: &Recipe) -> bool {
     let Candidate { found, seen } = &candidates[index];
     if !found.is_noise {
         return false;
@@ -488,15 +504,22 @@ fn fits(candidates: &[Candidate], index: usize) -> bool {
     }
     candidates.iter().enumerate().filter(|(other, _)| *other != index).all(|(_, other)| {
         let theirs = &other.found.hypothesis;
+        if own.mistake.map(|mistake| mistake.id) == theirs.mistake.map(|mistake| mistake.id) {
+            return true;
+        }
+        // What is written otherwise may have a mistake besides.
+        let is_besides = own.is_right_before_writing(recipe)
+            && own.fit.is_none()
+            && theirs.written == Written::right(recipe);
         let is_comparable = own.written.order == theirs.written.order
             && own.written.channels == theirs.written.channels
             && own.written.curve == theirs.written.curve
-            && !theirs.written.truncates
-            && own.mistake.map(|mistake| mistake.id) != theirs.mistake.map(|mistake| mistake.id);
-        if !is_comparable {
-            return true;
-        }
-        let to = as_read(&other.found.rendered, &theirs.written, &own.written, seen.size);
+            && !theirs.written.truncates;
+        let to = match is_comparable {
+            true => as_read(&other.found.rendered, &theirs.written, &own.written, seen.size),
+            false if is_besides && own.written != theirs.written => other.found.rendered.clone(),
+            false => return true,
+        };
         let is_in_bytes = own.written != theirs.written
             && own.steps.is_none()
             && theirs.is_right_before_writing(&own.recipe);

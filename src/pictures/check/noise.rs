@@ -115,12 +115,12 @@ pub fn grain(mine: &Mine, seen: &Seen, right: &Compared) -> Option<Grain> {
     // pixels to the right.
     let own = 2.0 * 0.75 * single / right.rendered.samples as f64;
     let [near, far] = [found.near - own, found.far - own];
-    let altered = if far > SMOOTHED * near.max(0.1 * own) {
-        Some("its noise has been smoothed")
-    } else if has_squares(mine) {
+    let altered = if has_squares(mine) {
         Some("it has the squares of JPEG")
     } else if has_palette(mine, &right.hypothesis.written.bytes_of(&mean, right.hypothesis.size())) {
         Some("it has a palette of few colours")
+    } else if far > SMOOTHED * near.max(0.1 * own) {
+        Some("its noise has been smoothed")
     } else {
         None
     };
