@@ -3,7 +3,7 @@
 use super::Window;
 use crate::app::commands::Command;
 use crate::app::files::Resumed;
-use crate::app::model::{Dock, Document, Kept, Origin, Source};
+use crate::app::model::{Dock, Document, Kept, Origin, Partner, Source};
 use crate::job::saved::{Opened, Saved};
 use crate::progressive::Stop;
 use eframe::egui::Context;
@@ -49,7 +49,6 @@ impl Window {
                 Err(reason) => self.shell.toasts.bad(format!("Not kept: {reason}")),
             }
         }
-        self.display.kept.verdict.0.follow();
         while let Some(outcome) = self.files.resumed.take() {
             match outcome {
                 Ok(resumed) => self.go_on(resumed),
@@ -110,7 +109,12 @@ impl Window {
     }
 
     fn add_kept(&mut self, kept: Kept) {
+        let (number, is_file) = (kept.number, kept.document.is_none());
         let place = self.model.view.keep(kept);
+        if is_file {
+            self.model.view.compare_with(Partner::Kept(number));
+            return;
+        }
         if self.model.remembered.dock.is_none() {
             self.model.remembered.dock = Some(Dock::Kept);
         }
