@@ -255,7 +255,7 @@ table! {
     CompareDevices "Compare CPU and GPU",
         "Traces on both in turns: their pictures, errors over time, and speeds", keys(SHIFT, Key::C),
         off(|_| Device::Gpu.unavailable()),
-        on(|f| matches!(f.model.view.compared(f.document()), Some(Partner::Device(Device::Cpu | Device::Gpu)))),
+        on(|f| matches!(f.model.other_device(), Some(Device::Cpu | Device::Gpu))),
         also("speed fast benchmark rays factor against versus");
     CompareFile "Compare with a file…", "Compares with the picture of any program: PNG, PPM or EXR",
         also("picture open");

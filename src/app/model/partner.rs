@@ -1,4 +1,4 @@
-//! What the picture is compared with.
+//! The partner of a comparison: the other picture.
 
 use super::{Device, Document, KeptList, Origin};
 use crate::job::recipe::Recipe;
@@ -6,7 +6,7 @@ use crate::job::render::SamplerKind;
 use crate::stages::Stage;
 use std::sync::Arc;
 
-/// What the picture is compared with.
+/// The other picture of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Partner {
     /// The stage that belongs to this one; without a stage, the book's own arithmetic.
@@ -65,7 +65,7 @@ impl Partner {
             Partner::Device(_) => "The same samples on this device, which takes turns with the other one",
             Partner::Depth(_) => "The same picture, in which longer paths end in black",
             Partner::Sampler(_) => "The same picture with other random numbers",
-            Partner::Raw => "What denoising changes",
+            Partner::Raw => "The same samples, as they are traced",
             Partner::Kept(_) => "A picture that does not change",
         }
     }
@@ -126,8 +126,8 @@ impl Partner {
 
 fn sampler_word(sampler: SamplerKind) -> &'static str {
     match sampler {
-        SamplerKind::Sobol => "Even (Sobol)",
-        SamplerKind::Independent => "Independent",
+        SamplerKind::Sobol => "Even samples",
+        SamplerKind::Independent => "Independent samples",
     }
 }
 

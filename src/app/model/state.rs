@@ -125,6 +125,14 @@ impl Model {
         [partner.names(&self.view.kept), partner.names_of_mine(&self.document, self.remembered.device)]
     }
 
+    /// The other device, if the picture is compared with what that traces.
+    pub fn other_device(&self) -> Option<Device> {
+        match self.view.compared(&self.document)? {
+            Partner::Device(device) => Some(device),
+            _ => None,
+        }
+    }
+
     /// Why the picture cannot be compared with its partner; `None` if it can.
     pub fn nothing_to_compare(&self) -> Option<String> {
         match self.view.partner(&self.document) {

@@ -26,7 +26,7 @@ pub struct ViewState {
     show: Show,
     #[serde(skip)]
     mode: Option<Mode>,
-    /// What the picture is compared with.
+    /// The other picture of a comparison.
     #[serde(skip)]
     pub partner: Partner,
     /// Position of the wipe's divider, `0..=1` of the picture's width.
@@ -55,7 +55,7 @@ impl ViewState {
         self.mode
     }
 
-    /// What the picture of `document` is compared with, or would be.
+    /// The other picture if that of `document` is compared.
     pub fn partner(&self, document: &Document) -> Option<Partner> {
         match self.partner {
             Partner::Usual => Partner::usual(document),
@@ -64,7 +64,7 @@ impl ViewState {
         }
     }
 
-    /// What the picture of `document` is compared with now.
+    /// The other picture, if that of `document` is compared now.
     pub fn compared(&self, document: &Document) -> Option<Partner> {
         self.mode().and_then(|_| self.partner(document))
     }
@@ -77,9 +77,9 @@ impl ViewState {
         }
     }
 
-    /// Keeps a picture, and compares with it unless another one is compared with. Returns its place.
+    /// Keeps a picture, to compare with unless another one is compared with. Returns its place.
     pub fn keep(&mut self, kept: Kept) -> usize {
-        if self.mode.is_none() || self.kept_partner().is_none() {
+        if self.mode.is_none() {
             self.partner = Partner::Kept(kept.number);
         }
         self.kept.add(kept)
@@ -109,6 +109,14 @@ impl ViewState {
         self.is_denoised |= partner == Partner::Raw;
         if self.mode.is_none() {
             self.toggle(Mode::Wipe);
+        }
+    }
+
+    /// Filters the noise away, or not. Without that, there is no other picture without denoising.
+    pub fn toggle_denoise(&mut self) {
+        self.is_denoised = !self.is_denoised;
+        if self.partner == Partner::Raw {
+            (self.mode, self.partner) = (None, Partner::Usual);
         }
     }
 

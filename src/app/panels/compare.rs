@@ -1,4 +1,4 @@
-//! What the picture is compared with, and the tools to compare: the same for every partner.
+//! The partner of a comparison, and the tools to compare, which are the same for every partner.
 
 use crate::app::commands::{Command, PanelContext};
 use crate::app::model::{Dock, Partner};
@@ -17,9 +17,11 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
         list(ui, about, shown.as_deref().unwrap_or("Choose"), |ui| partners(ui, cx));
     });
     tools(ui, cx);
-    let is_race = matches!(cx.model.view.compared(cx.document()), Some(Partner::Device(_)));
     // The dock says it beside the speeds.
-    if !is_race || cx.model.remembered.dock != Some(Dock::Error) || cx.other.is_none() {
+    if cx.model.other_device().is_none()
+        || cx.model.remembered.dock != Some(Dock::Error)
+        || cx.other.is_none()
+    {
         verdict(ui, cx);
     }
     if cx.model.view.mode().is_some() && cx.model.not_subtractable().is_some() {

@@ -3,7 +3,7 @@
 
 use super::compare;
 use crate::app::commands::{PanelContext, Snapshot};
-use crate::app::model::Partner;
+use crate::app::model::Device;
 use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{compact, hint, small, tip};
 use crate::measure::grouped;
@@ -57,17 +57,17 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
 const NUMBERS: f32 = 264.0;
 
 /// The picture traced by one device, and by another.
-struct Race([(&'static str, Arc<Status>); 2]);
+struct Race([(Device, Arc<Status>); 2]);
 
 impl Race {
     fn of(cx: &Snapshot) -> Option<Race> {
-        let Some(Partner::Device(other)) = cx.model.view.compared(cx.document()) else { return None };
-        let mine = (cx.model.remembered.device.label(), Arc::clone(&cx.status));
-        Some(Race([mine, (other.label(), Arc::clone(cx.other.as_ref()?))]))
+        let other = cx.model.other_device()?;
+        let mine = (cx.model.remembered.device, Arc::clone(&cx.status));
+        Some(Race([mine, (other, Arc::clone(cx.other.as_ref()?))]))
     }
 
     /// How much faster a device is than the other one; `None` until both have traced, each alone.
-    fn factor(&self) -> Option<(&'static str, f64)> {
+    fn factor(&self) -> Option<(Device, f64)> {
         let [(mine, status), (other, of_other)] = &self.0;
         let speeds = [status, of_other].map(|status| status.rays_per_second());
         let is_pure = |status: &Status| {
@@ -85,9 +85,11 @@ impl Race {
 
     fn ui(&self, ui: &mut Ui, cx: &PanelContext) {
         ui.spacing_mut().item_spacing.y = 4.0;
-        for (name, status) in &self.0 {
+        for (device, status) in &self.0 {
+            let name = device.label();
             let speed = compact(two_digits(status.rays_per_second() / 1e6));
-            ui.label(egui::RichText::new(format!("{name}: {speed} million rays per second")).strong());
+            let words = egui::RichText::new(format!("{name}: {speed} million rays per second"));
+            ui.label(words.strong().color(style(ui, device.name()).0));
             let error = status.error.map_or_else(String::new, |error| {
                 format!(", error {} %", compact(two_digits(100.0 * error.rmse)))
             });
@@ -96,7 +98,8 @@ impl Race {
             small(ui, format!("{samples} samples per pixel in {seconds} s{error}"));
         }
         match self.factor() {
-            Some((name, factor)) => {
+            Some((device, factor)) => {
+                let name = device.label();
                 ui.label(format!("{name} is {} times as fast.", compact(two_digits(factor))));
             }
             None if self.0[0].1.contributions.len() > 1 => {
@@ -110,15 +113,9 @@ impl Race {
 
 fn plot(ui: &mut Ui, cx: &Snapshot) {
     let (status, goal) = (&cx.status, cx.document().stop.noise);
-    let &theme::Colours { first: of_cpu, second: of_gpu, third: expected, fourth: of_both, .. } =
-        theme::colours(ui);
-    let (weak, strong) = (ui.visuals().weak_text_color(), ui.visuals().strong_text_color());
-    let style = |backend: &str| match backend {
-        "cpu" => (of_cpu, "CPU"),
-        "gpu" => (of_gpu, "GPU"),
-        "cpu,gpu" => (of_both, "both"),
-        _ => (strong, "reference"),
-    };
+    let &theme::Colours { third: expected, fourth: of_both, .. } = theme::colours(ui);
+    let weak = ui.visuals().weak_text_color();
+    let style = |backend: &str| style(ui, backend);
     let now = points(status).last().map(at);
     let mut drawn: Vec<(Color32, String, Vec<[f64; 2]>)> = Vec::new();
     for (backend, points) in curves(&cx.earlier, None) {
@@ -128,7 +125,7 @@ fn plot(ui: &mut Ui, cx: &Snapshot) {
         drawn.push((style(backend).0, style(backend).1.to_owned(), points));
     }
     if let Some(other) = &cx.other {
-        let is_device = matches!(cx.model.view.compared(cx.document()), Some(Partner::Device(_)));
+        let is_device = cx.model.other_device().is_some();
         let [[_, name], _] = cx.model.side_names();
         for (backend, points) in curves(&other.history, newest(other)) {
             drawn.push((if is_device { style(backend).0 } else { of_both }, name.clone(), points));
@@ -142,8 +139,11 @@ fn plot(ui: &mut Ui, cx: &Snapshot) {
     let axis = |hints: AxisHints<'static>, name: &str| {
         hints.label(egui::RichText::new(name).small()).formatter(|mark, _| power(mark.value))
     };
-    let plot = Plot::new("error")
-        .legend(Legend::default().position(Corner::RightTop))
+    let plot = Plot::new("error");
+    // The numbers of two devices have the colours of their curves.
+    let is_named = Race::of(cx).is_some();
+    let plot = if is_named { plot } else { plot.legend(Legend::default().position(Corner::RightTop)) };
+    let plot = plot
         .allow_drag(false)
         .allow_zoom(Vec2b::FALSE)
         .allow_scroll(false)
@@ -184,6 +184,17 @@ fn plot(ui: &mut Ui, cx: &Snapshot) {
             plot.line(Line::new(name, points).color(colour).width(1.5));
         }
     });
+}
+
+/// The colour and the name of a backend's curve.
+fn style(ui: &Ui, backend: &str) -> (Color32, &'static str) {
+    let &theme::Colours { first: of_cpu, second: of_gpu, fourth: of_both, .. } = theme::colours(ui);
+    match backend {
+        "cpu" => (of_cpu, "CPU"),
+        "gpu" => (of_gpu, "GPU"),
+        "cpu,gpu" => (of_both, "both"),
+        _ => (ui.visuals().strong_text_color(), "reference"),
+    }
 }
 
 /// Rounds to two significant digits.

@@ -131,7 +131,7 @@ fn card(ui: &mut Ui, place: usize, view: &mut ViewState, cx: &PanelContext) {
     let chosen = ui.scope_id().with("chosen");
     if is_chosen && ui.data(|data| data.get_temp(chosen)) != Some(kept.number) {
         ui.data_mut(|data| data.insert_temp(chosen, kept.number));
-        response.scroll_to_me(None);
+        added.response.scroll_to_me(None);
     }
     if response.double_clicked() {
         view.look(place);

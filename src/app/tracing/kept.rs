@@ -22,6 +22,8 @@ type Sides = (OtherId, u64, u64);
 pub struct KeptActions {
     pub verdict: Query<Sides, Verdict>,
     pub copied: Answers<Kept>,
+    /// Pictures of files, to compare with.
+    pub files: Answers<Kept>,
     /// The picture is to be kept as soon as it has samples.
     pub is_wanted: bool,
     /// The two pictures are to be compared as soon as both have samples.
@@ -39,8 +41,12 @@ impl KeptActions {
         }
         if let Some(other) = tracing.other(model).filter(Other::is_ready) {
             let is_over = |tracer: &Tracer| tracer.status().phase.is_over();
+            let samples = |tracer: &Tracer| tracer.status().samples_per_pixel;
             let is_due = matches!(other, Other::Traced(partner, tracer, _)
-                if partner.has_same_samples() && is_over(tracer) && is_over(&tracing.main));
+                if partner.has_same_samples()
+                    && is_over(tracer)
+                    && is_over(&tracing.main)
+                    && (samples(tracer) == samples(&tracing.main) || document.stop.seconds.is_some()));
             let sides = sides(&other, tracing);
             if std::mem::take(&mut self.is_asked) || is_due && self.verdict.asked != Some(sides) {
                 self.ask(context, model, tracing, sides);
@@ -60,7 +66,7 @@ impl KeptActions {
     /// Reads the picture of a file, to compare with.
     pub fn read(&mut self, context: &Context, model: &Model, path: PathBuf) {
         let (transfer, own) = (model.document.rules().transfer, context.clone());
-        self.copied.ask("compare", context, move || Kept::read(&own, &path, transfer));
+        self.files.ask("compare", context, move || Kept::read(&own, &path, transfer));
     }
 
     /// Compares the other picture with the traced one. An earlier question is forgotten.
@@ -87,7 +93,7 @@ impl KeptActions {
         });
     }
 
-    /// What is known about the difference of the two pictures.
+    /// The verdict on the difference of the two pictures, or that it is awaited.
     pub fn verdict(&self, model: &Model, tracing: &Tracing) -> Option<Verdict> {
         let (id, run, _) = sides(&tracing.other(model)?, tracing);
         let (asked, of_run, _) = self.verdict.asked?;

@@ -156,7 +156,7 @@ impl Tracing {
         };
         self.invalid = self.main.want(&want, self.film.take()).err();
         let is_there = self.second.follow(context, model, &want, &self.main);
-        self.take_turns(context, matches!(partner, Some(Partner::Device(_))), *is_paused);
+        self.take_turns(context, model.other_device().is_some(), *is_paused);
         is_there
     }
 

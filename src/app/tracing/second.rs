@@ -63,7 +63,7 @@ impl<'a> Other<'a> {
     }
 }
 
-/// The partner that was traced last, of which origin and scene, and the origin of its picture.
+/// The partner that was traced last, the origin and the scene of this picture then, and the origin of the other one.
 type Of = (Partner, Arc<Origin>, Arc<CheckedScene>, Arc<Origin>);
 
 /// A picture that was resolved from the other film, in a view.

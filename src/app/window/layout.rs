@@ -16,6 +16,9 @@ use eframe::egui::{self, Ui};
 /// Windows narrower than this many points have no room for two panels beside the picture.
 pub(super) const NARROW: f32 = 1000.0;
 
+/// In windows lower than this many points, what is compared scrolls with the text.
+const LOW: f32 = 500.0;
+
 impl Window {
     /// Draws everything. Each panel gets the state that it may change, the facts, and the list of commands to add to.
     pub(super) fn layout(&mut self, ui: &mut Ui) {
@@ -46,6 +49,7 @@ impl Window {
         let Model { document, view, remembered, .. } = model;
         let has = &cx.model.remembered;
         let (room, is_narrow) = (ui.available_width(), ui.available_width() < NARROW);
+        let is_low = ui.available_height() < LOW;
         bar::ui(ui, cx);
         status::ui(ui, cx, tracing.sizer.offer);
         let mut tabs = Vec::new();
@@ -75,10 +79,17 @@ impl Window {
                     Tab::Stage => {
                         right::foot(ui, |ui| {
                             display.tone.ui(ui, view, cx);
-                            compare::ui(ui, cx);
+                            if !is_low {
+                                compare::ui(ui, cx);
+                            }
                             numbers(ui, cx, display, tracing, &tools.inspector);
                         });
-                        right::scrolling(ui, |ui| stage_panel::ui(ui, cx));
+                        right::scrolling(ui, |ui| {
+                            stage_panel::ui(ui, cx);
+                            if is_low {
+                                compare::ui(ui, cx);
+                            }
+                        });
                     }
                     Tab::Code => tools.code.ui(ui, cx),
                     Tab::Check => tools.check.ui(ui, cx),

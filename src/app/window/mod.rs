@@ -276,7 +276,9 @@ impl Window {
             self.model.own_stop = document.own_stop();
         }
         let room = self.display.viewport.room_pixels;
-        let needs_film = self.files.needs_film() || self.autosave.is_restoring;
+        // The dock opens when devices are compared, but their films stay.
+        let needs_film =
+            self.files.needs_film() || self.autosave.is_restoring || self.model.other_device().is_some();
         self.tracing.follow_size(context, &mut self.model, room, needs_film);
         if self.changes.follow(context, &self.model.document) {
             self.tracing.seconds_before = Some(0.0);

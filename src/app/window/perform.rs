@@ -90,7 +90,7 @@ impl Window {
             C::Brighter => view.tone.expose(Tone::STEP),
             C::Darker => view.tone.expose(-Tone::STEP),
             C::NoExposure => view.tone.exposure = 0.0,
-            C::Denoise => view.is_denoised ^= true,
+            C::Denoise => view.toggle_denoise(),
             C::Theme(theme) => {
                 remembered.theme = theme;
                 context.set_theme(theme);
@@ -349,7 +349,7 @@ impl Window {
     /// Compares CPU and GPU, or ends that.
     fn compare_devices(&mut self) {
         let other = if self.model.remembered.device == Device::Gpu { Device::Cpu } else { Device::Gpu };
-        if self.model.view.compared(self.document()) == Some(Partner::Device(other)) {
+        if self.model.other_device() == Some(other) {
             self.model.view.end_comparison();
             return;
         }

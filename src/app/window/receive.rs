@@ -49,6 +49,16 @@ impl Window {
                 Err(reason) => self.shell.toasts.bad(format!("Not kept: {reason}")),
             }
         }
+        while let Some(outcome) = self.display.kept.files.take() {
+            match outcome {
+                Ok(kept) => {
+                    let partner = Partner::Kept(kept.number);
+                    self.model.view.keep(kept);
+                    self.model.view.compare_with(partner);
+                }
+                Err(reason) => self.shell.toasts.bad(format!("Not compared: {reason}")),
+            }
+        }
         while let Some(outcome) = self.files.resumed.take() {
             match outcome {
                 Ok(resumed) => self.go_on(resumed),
@@ -109,12 +119,7 @@ impl Window {
     }
 
     fn add_kept(&mut self, kept: Kept) {
-        let (number, is_file) = (kept.number, kept.document.is_none());
         let place = self.model.view.keep(kept);
-        if is_file {
-            self.model.view.compare_with(Partner::Kept(number));
-            return;
-        }
         if self.model.remembered.dock.is_none() {
             self.model.remembered.dock = Some(Dock::Kept);
         }
