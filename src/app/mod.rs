@@ -19,7 +19,7 @@ mod window;
 
 pub use commands::{Command, MENUS, ROWS};
 pub use eframe::egui::ThemePreference as Theme;
-pub use model::{Device, Dock, Document, Origin, Remembered, Show, Sizing, Source, Tab};
+pub use model::{Device, Dock, Document, Origin, Partner, Remembered, Show, Sizing, Source, Tab};
 pub use window::Window;
 
 use crate::cli::{DrawWith, WindowOptions};

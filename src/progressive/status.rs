@@ -87,7 +87,8 @@ pub struct Status {
     pub denoised: Option<DenoisedError>,
     /// Why the estimate is doubtful.
     pub doubt: Option<String>,
-    /// The error at powers of two of samples per pixel, each at the end of the first pass that reaches it.
+    /// The error at powers of two of samples per pixel, each at the end of the first pass that reaches it, and where
+    /// another backend takes over.
     pub history: Vec<HistoryPoint>,
     /// Which backends have added how many samples, in order of first appearance.
     pub contributions: Vec<Contribution>,

@@ -26,6 +26,17 @@ fn another_backend_continues_the_same_film() {
     assert_eq!(progressive.finish(), Some(expected(3000)));
 }
 
+#[test]
+fn the_history_of_a_backend_ends_where_another_one_takes_over() {
+    let progressive = started_with(CPU, Plan::samples(3000), |choice| Box::new(Fake::new(choice.name())));
+    wait_for(&progressive, 100);
+    progressive.switch_backend(FAILING);
+    let status = progressive.wait_until_over();
+    let [(first, samples), _] = parts(&status)[..] else { panic!("{:?}", parts(&status)) };
+    let last = status.history.iter().rfind(|point| point.backend == first);
+    assert_eq!(last.map(|point| point.samples_per_pixel), Some(samples));
+}
+
 /// A user changes their mind while the other backend is still being made.
 #[test]
 fn switching_back_calls_the_switch_off() {

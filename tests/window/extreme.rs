@@ -3,7 +3,7 @@
 use crate::common::{has_samples, open, send, until};
 use crate::questions::Ask as _;
 use egui_kittest::kittest::Queryable;
-use weekender::app::Command;
+use weekender::app::{Command, Partner};
 use weekender::measure::stress::shown_cases;
 
 fn make_small(harness: &mut egui_kittest::Harness<'_, weekender::app::Window>) {
@@ -22,9 +22,10 @@ fn extreme_scenes_say_what_to_watch_and_wipe_against_the_book() {
         let watch = case.watch.unwrap();
         assert!(harness.query_all_by_label_contains(watch.look_for).next().is_some(), "{}", case.id);
     }
-    send(&mut harness, Command::BookArithmetic);
+    assert_eq!(harness.state().partner(), Some(Partner::Book));
+    send(&mut harness, Command::Wipe);
     assert!(harness.state().is_comparing());
     until(&mut harness, "the book's picture", |window| window.has_other_picture());
-    send(&mut harness, Command::BookArithmetic);
+    send(&mut harness, Command::Wipe);
     assert!(!harness.state().is_comparing());
 }

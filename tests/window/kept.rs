@@ -1,6 +1,8 @@
 //! Pictures that are kept.
 
-use crate::common::{SMALL, control, drag_from, has_samples, middle, open, scroll, send, until};
+use crate::common::{
+    SMALL, control, drag_from, has_samples, middle, name_file, open, save, scroll, send, until,
+};
 use crate::questions::Ask as _;
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
@@ -101,7 +103,7 @@ fn a_kept_picture_stays_as_it_was() {
 
     harness.key_press_modifiers(Modifiers::ALT, Key::Num1);
     until(&mut harness, "it", |window| window.other_pixel(AT) == Some(in_8_bits(kept, 0.0)));
-    assert_eq!((harness.state().looked(), harness.state().divider()), (Some(0), 1.0));
+    assert_eq!(harness.state().looked(), Some(0));
     send(&mut harness, Command::Brighter);
     until(&mut harness, "exposure", |window| window.other_pixel(AT) == Some(in_8_bits(kept, 0.5)));
     send(&mut harness, Command::NoExposure);
@@ -114,7 +116,6 @@ fn a_kept_picture_stays_as_it_was() {
 #[test]
 fn one_key_flips_and_a_change_returns_to_the_live_picture() {
     let mut harness = finished(4);
-    assert!(harness.state().disabled_reason(Command::Flip).is_some());
     keep(&mut harness);
     let mut seen = Vec::new();
     for _ in 0..3 {
@@ -148,7 +149,7 @@ fn a_kept_picture_is_wiped_and_subtracted() {
     let mut harness = finished(8);
     let kept = mean(&mut harness);
     keep(&mut harness);
-    send(&mut harness, Command::KeptDifference);
+    send(&mut harness, Command::Difference);
     let none = HeatScale::DIFFERENCE.colour(0.0);
     until(&mut harness, "no difference", |window| window.shown_pixel(AT) == Some(none));
     change(&mut harness);
@@ -156,14 +157,14 @@ fn a_kept_picture_is_wiped_and_subtracted() {
     let squares: f64 = (0..3).map(|i| (live[i] - kept[i]).powi(2)).sum();
     let colour = HeatScale::DIFFERENCE.colour((squares / 3.0).sqrt());
     until(&mut harness, "the difference", |window| window.shown_pixel(AT) == Some(colour));
-    harness.key_press_modifiers(Modifiers::SHIFT, Key::C);
+    harness.key_press(Key::C);
     until(&mut harness, "a wipe", |window| window.is_comparing() && window.has_other_picture());
     // Another card takes the place of the one that is compared with.
     keep(&mut harness);
     control(&harness, &title(&harness, 1)).click();
     harness.run_steps(3);
     assert!(harness.state().is_comparing());
-    send(&mut harness, Command::KeptWipe);
+    send(&mut harness, Command::Wipe);
     assert!(!harness.state().is_comparing(), "it was this wipe");
 }
 
@@ -178,10 +179,24 @@ fn pictures_of_other_sizes_are_not_subtracted() {
     keep(&mut harness);
     harness.state_mut().document_mut().set_size([64, 36]);
     harness.run_steps(2);
-    assert!(harness.state().disabled_reason(Command::KeptDifference).is_some());
-    harness.state_mut().document_mut().set_size([32, 18]);
-    harness.run_steps(2);
-    assert!(harness.state().disabled_reason(Command::KeptDifference).is_none());
+    assert!(harness.state().disabled_reason(Command::Difference).is_some());
+    send(&mut harness, Command::RenderAtPartnerSize);
+    assert_eq!(harness.state().shown_document().size(), [32, 18]);
+    assert!(harness.state().disabled_reason(Command::Difference).is_none());
+}
+
+/// A file has 8 bits and no noise of its own.
+#[test]
+fn a_saved_picture_differs_from_its_render_by_noise_only() {
+    let mut harness = open("--stage glass-schlick --size 96x54 --samples 16");
+    until(&mut harness, "the end", is_done);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.png");
+    save(&mut harness, Command::Save, &path);
+    name_file(&mut harness, Command::CompareFile, &path);
+    until(&mut harness, "the file", |window| window.is_comparing() && window.has_other_picture());
+    assert_eq!(harness.state().other_pixel([9, 2]), harness.state().shown_pixel([9, 2]));
+    assert_eq!(only_noise(&mut harness), "Only noise.");
 }
 
 #[test]
@@ -199,9 +214,8 @@ fn later_pictures_move_up_when_one_is_deleted() {
 /// The first sentence of the answer, once it is there.
 fn only_noise(harness: &mut Harness<'_, Window>) -> String {
     send(harness, Command::OnlyNoise);
-    until(harness, "an answer", |window| window.only_noise().is_some());
-    let (headline, _) = harness.state().only_noise().unwrap().unwrap();
-    headline.to_owned()
+    until(harness, "an answer", |window| window.verdict().is_some());
+    harness.state().verdict().unwrap().1.to_owned()
 }
 
 #[test]
@@ -209,7 +223,7 @@ fn noise_is_told_from_a_difference() {
     let mut harness = open("--stage glass-schlick --size 96x54 --samples 16");
     until(&mut harness, "the end", is_done);
     keep(&mut harness);
-    assert_eq!(only_noise(&mut harness), "Identical to the bit.");
+    assert_eq!(only_noise(&mut harness), "Equal to the bit.");
     for (angle, expected) in [(90.0, "Only noise."), (80.0, "More than noise.")] {
         let document = harness.state_mut().document_mut();
         (document.settings.seed, document.camera.vfov_degrees) = (5, angle);

@@ -3,6 +3,7 @@
 
 mod commands;
 mod common;
+mod compare;
 mod device;
 mod edits;
 mod extreme;

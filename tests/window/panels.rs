@@ -102,6 +102,20 @@ fn tab_goes_through_the_bar_from_left_to_right() {
     assert!(places.len() > 10 && places.is_sorted(), "{places:?}");
 }
 
+#[test]
+fn f6_goes_from_panel_to_panel() {
+    let mut harness = open_sized(SMALL, [1280.0, 800.0]);
+    let mut focused = || {
+        harness.key_press(Key::F6);
+        harness.run_steps(3);
+        let nodes = harness.root().children_recursive();
+        let node = nodes.map(|node| node.accesskit_node()).find(|node| node.is_focused());
+        node.and_then(|node| node.label())
+    };
+    let names = [(); 4].map(|()| focused().unwrap_or_default());
+    assert_eq!(names, ["File", "Field of view", "Compare with", "File"]);
+}
+
 /// Everything that a command or a control can change.
 fn state_of(harness: &mut Harness<'_, Window>) -> String {
     let nodes: Vec<_> = harness

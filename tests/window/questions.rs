@@ -1,8 +1,9 @@
 //! Questions of the tests to a window.
 
 use eframe::egui;
-use weekender::app::{Command, Document, Remembered, Show, Window};
-use weekender::progressive::Status;
+use std::sync::Arc;
+use weekender::app::{Command, Document, Partner, Remembered, Show, Window};
+use weekender::progressive::{HistoryPoint, Status};
 
 /// The pixel that is read, its bytes, whether it is the other picture's, and the means of both if they are compared.
 pub type Read = ([u32; 2], [u8; 3], bool, Option<[[f64; 3]; 2]>);
@@ -39,8 +40,20 @@ pub trait Ask {
     /// The place of the kept picture that hides the traced one.
     fn looked(&self) -> Option<usize>;
 
-    /// The two sentences of the answer to "Only noise?".
-    fn only_noise(&self) -> Option<Result<(&str, &str), &str>>;
+    /// What the picture can be compared with.
+    fn partners(&self) -> Vec<Partner>;
+
+    /// What it is compared with, or would be.
+    fn partner(&self) -> Option<Partner>;
+
+    /// The status of the render that it is compared with.
+    fn other_status(&self) -> Option<Arc<Status>>;
+
+    /// The error over time of renders of the same picture that were started again.
+    fn earlier_curves(&self) -> Vec<HistoryPoint>;
+
+    /// Whether the two that are compared are equal, and that in words, once it is known.
+    fn verdict(&self) -> Option<(bool, &'static str)>;
 
     fn disabled_reason(&self, command: Command) -> Option<String>;
 
@@ -128,19 +141,32 @@ impl Ask for Window {
     }
 
     fn kept(&self) -> Vec<(String, u64)> {
-        self.model.view.kept.iter().map(|kept| (kept.document.title(), kept.samples())).collect()
+        self.model.view.kept.iter().map(|kept| (kept.name.clone(), kept.samples())).collect()
     }
 
     fn looked(&self) -> Option<usize> {
-        self.model.view.looked()
+        let kept = self.model.view.kept_partner().filter(|_| self.model.view.is_hidden())?;
+        Some(self.model.view.kept.place(kept))
     }
 
-    fn only_noise(&self) -> Option<Result<(&str, &str), &str>> {
-        let verdict = &self.display.kept.verdict.0;
-        match (&verdict.fault, &verdict.answer) {
-            (Some(reason), _) => Some(Err(reason)),
-            (None, answer) => answer.as_ref().map(|answer| Ok((answer.headline, answer.words.as_str()))),
-        }
+    fn partners(&self) -> Vec<Partner> {
+        self.model.partners()
+    }
+
+    fn partner(&self) -> Option<Partner> {
+        self.model.view.partner(&self.model.document)
+    }
+
+    fn other_status(&self) -> Option<Arc<Status>> {
+        self.snapshot().other
+    }
+
+    fn earlier_curves(&self) -> Vec<HistoryPoint> {
+        self.snapshot().earlier
+    }
+
+    fn verdict(&self) -> Option<(bool, &'static str)> {
+        self.snapshot().verdict.and_then(|verdict| Some((verdict.is_equal?, verdict.headline)))
     }
 
     fn disabled_reason(&self, command: Command) -> Option<String> {
@@ -160,18 +186,12 @@ impl Ask for Window {
     }
 
     fn has_other_picture(&self) -> bool {
-        let (second, view) = (&self.tracing.second, &self.model.view);
-        let Some(shown) = second.shown(view) else { return false };
-        match (view.compared(self.shown_document()), &second.of) {
-            (Some(wanted), Some((other, origin))) => {
-                wanted == *other && std::sync::Arc::ptr_eq(origin, &shown.document.origin)
-            }
-            _ => view.compared_kept().is_some(),
-        }
+        self.other_pixel([0, 0]).is_some()
     }
 
     fn other_pixel(&self, at: [u32; 2]) -> Option<[u8; 3]> {
-        self.tracing.second.shown(&self.model.view).and_then(|shown| shown.texture.colour(at))
+        let other = self.tracing.other(&self.model)?;
+        self.tracing.second.texture(&other)?.0.colour(at)
     }
 
     fn divider(&self) -> f32 {

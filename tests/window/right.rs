@@ -50,6 +50,13 @@ fn a_picture_of_another_program_is_checked() {
     until_seen(&mut harness, "It is right");
     harness.run_steps(2);
     assert!(harness.query_by_label("Your picture and ours").is_some());
+    send(&mut harness, Command::CompareMine);
+    until(&mut harness, "my picture", |window| window.has_other_picture() && has_samples(1)(window));
+    let document = harness.state().shown_document();
+    assert!(document.stage().unwrap().section.starts_with("2.") && document.size() == [160, 90]);
+    for at in [[0, 0], [80, 40], [159, 89]] {
+        assert_eq!(harness.state().other_pixel(at), harness.state().shown_pixel(at), "{at:?}");
+    }
     let _kept = drop_file(&mut harness, &gradient(true));
     until(&mut harness, "the answer", |window| window.checked().is_some_and(|title| title != "It is right"));
     harness.run_steps(2);

@@ -5,7 +5,7 @@ use crate::gpu_common::has_adapter;
 use crate::questions::Ask as _;
 use eframe::egui::{Pos2, vec2};
 use egui_kittest::Harness;
-use weekender::app::{Command, Window};
+use weekender::app::{Command, Partner, Window};
 
 /// The colour on the screen.
 fn colour_at(harness: &mut Harness<'_, Window>, at: Pos2) -> [u8; 3] {
@@ -43,7 +43,9 @@ fn the_traced_picture_is_right_of_the_divider() {
     };
     let is_near = |a: [u8; 3], b: [u8; 3]| a.iter().zip(b).all(|(a, b)| a.abs_diff(b) < 12);
     let traced = colours(&mut harness);
-    for command in [Command::Wipe, Command::KeptWipe] {
+    let kept = harness.state().partner().unwrap();
+    for partner in [kept, Partner::Usual] {
+        let command = Command::CompareWith(partner);
         send(&mut harness, command);
         until(&mut harness, "two pictures", |window| window.has_other_picture());
         let rect = harness.state().picture_rect();
@@ -57,7 +59,7 @@ fn the_traced_picture_is_right_of_the_divider() {
             let expected = if share < 0.5 { [true; 2] } else { [false; 2] };
             assert_eq!(is_traced, expected, "{command:?} {share}: {found:?} {traced:?}");
         }
-        send(&mut harness, command);
+        send(&mut harness, Command::Wipe);
     }
 }
 

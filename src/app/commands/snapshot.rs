@@ -1,8 +1,17 @@
 //! A snapshot of the window for the panels, which show it but do not change it.
 
 use crate::app::model::{Document, Model};
-use crate::progressive::{Status, Stop};
+use crate::progressive::{HistoryPoint, Phase, Status, Stop};
 use std::sync::Arc;
+
+/// Whether two pictures differ by more than noise, in two sentences.
+#[derive(Clone)]
+pub struct Verdict {
+    /// `None` as long as nothing is known.
+    pub is_equal: Option<bool>,
+    pub headline: &'static str,
+    pub words: String,
+}
 
 /// A snapshot of the window at the start of the frame.
 pub struct Snapshot {
@@ -10,6 +19,12 @@ pub struct Snapshot {
     pub model: Model,
     /// The status of the render.
     pub status: Arc<Status>,
+    /// The status of the render that it is compared with, if that is traced.
+    pub other: Option<Arc<Status>>,
+    /// What is known about the difference of the two.
+    pub verdict: Option<Verdict>,
+    /// The errors of earlier renders of the same picture, for the plot.
+    pub earlier: Vec<HistoryPoint>,
     /// Seconds of tracing that the film's samples took before this run, if known.
     pub seconds_before: Option<f64>,
     /// What Undo and Redo would change.
@@ -47,9 +62,9 @@ impl Snapshot {
         self.document().further(&self.status).filter(|_| !self.model.is_paused)
     }
 
-    /// Whether samples are being added.
+    /// Whether samples are being added, or will be when another device has had its turn.
     pub fn is_working(&self) -> bool {
-        self.status.phase.is_working()
+        self.status.phase.is_working() || self.status.phase == Phase::Paused && !self.model.is_paused
     }
 
     /// Why the document's camera has no effect; `None` if it has one.

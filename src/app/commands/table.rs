@@ -1,7 +1,7 @@
 //! All commands of menus, keys, buttons and the palette: one table, with one row per command.
 
 use super::snapshot::Snapshot;
-use crate::app::model::{Channel, Device, Dock, Mode, Model, Show, Tab, ViewState, With};
+use crate::app::model::{Channel, Device, Dock, Mode, Model, Partner, Show, Tab, ViewState};
 use crate::job::output::OutputFormat;
 use crate::measure::stress::Case;
 use crate::stages::Stage;
@@ -145,6 +145,7 @@ table! {
         Bookmark(usize),
         /// Looks at a kept picture, counted from 0.
         Kept(usize),
+        CompareWith(Partner),
         /// Goes to the field of this name in the left panel.
         Field(&'static str),
     }
@@ -238,19 +239,26 @@ table! {
             None => Some("Only stages of the book name something to look for".to_owned()),
         }),
         on(|f| f.has_sight);
-    Wipe "Wipe", "Drag a divider between this stage and the one that it is compared with", key(Key::C),
-        off(|f| f.model.nothing_to_compare()),
-        on(|f| f.model.view.mode() == Some(Mode::Wipe) && f.model.view.with() == With::Stage),
-        also("slot snapshot compare");
+    Wipe "Wipe", "Drag a divider between this picture and the one that it is compared with", key(Key::C), line(),
+        off(|f| f.model.nothing_to_compare()), on(|f| f.model.view.mode() == Some(Mode::Wipe)), also("compare");
+    Flip "Flip between the two", "Shows the other picture in place of this one; again returns", key(Key::J),
+        off(|f| f.model.nothing_to_compare()), on(|f| f.model.view.is_hidden()), also("compare blink kept");
     Difference "Difference", "Shows where the two differ, and by how much", key(Key::X),
-        off(|f| f.model.nothing_to_compare()),
-        on(|f| f.model.view.mode() == Some(Mode::Difference) && f.model.view.compared_kept().is_none()),
-        also("slot snapshot compare subtract");
-    BookArithmetic "The book’s arithmetic", "Wipes against the same picture with the book’s own formulas",
-        needs(|f| f.document().origin.is_other_by_the_book(),
-            "This picture already has the book’s arithmetic, or traces no rays"),
-        on(|f| f.model.view.mode().is_some() && f.model.view.with() == With::Book),
-        also("rounding f64 precision");
+        off(|f| f.model.nothing_to_compare().or_else(|| f.model.not_subtractable())),
+        on(|f| f.model.view.mode() == Some(Mode::Difference)), also("compare subtract");
+    OnlyNoise "Is it only noise?", "Tests whether the two differ by more than chance", keys(SHIFT, Key::N),
+        off(|f| match f.model.view.partner(f.document()) {
+            Some(Partner::Raw) => Some("Both are made of the same samples".to_owned()),
+            _ => f.model.nothing_to_compare().or_else(|| f.model.not_subtractable()),
+        }),
+        also("compare same");
+    CompareDevices "Compare CPU and GPU",
+        "Traces on both in turns: their pictures, errors over time, and speeds", keys(SHIFT, Key::C),
+        off(|_| Device::Gpu.unavailable()),
+        on(|f| matches!(f.model.other_device(), Some(Device::Cpu | Device::Gpu))),
+        also("speed fast benchmark rays factor against versus");
+    CompareFile "Compare with a file…", "Compares with the picture of any program: PNG, PPM or EXR",
+        also("picture open");
     ListPaths "Paths of this pixel", "Shows the paths of the pixel under the pointer, ray by ray", key(Key::T),
         line(), off(|f| match f.no_rays() {
             Some(reason) => Some(reason.to_owned()),
@@ -280,7 +288,7 @@ table! {
         key(Key::Plus), off(|f| f.model.no_exposure()), also("exposure bright dim");
     Darker "Darker", "Shows the picture with half a stop less light; files are saved without it",
         key(Key::Minus), off(|f| f.model.no_exposure()), also("exposure dim");
-    NoExposure "As bright as it is saved", "Shows the picture without exposure", key(Key::Num0),
+    NoExposure "No exposure", "Shows the picture as bright as it is saved", key(Key::Num0),
         off(|f| f.model.no_exposure()), also("exposure bright dim reset");
     ZoomIn "Zoom in", "Ctrl and the wheel zoom at the pointer", key(Key::CloseBracket);
     ZoomOut "Zoom out", "Ctrl and the wheel zoom at the pointer", key(Key::OpenBracket);
@@ -294,18 +302,11 @@ table! {
         needs(has_spheres, "There is no sphere in this scene"), also("select");
     FocusSphere "Focus on the sphere", "Sets the focus distance to the nearest point of the selected sphere",
         needs(has_selection, NO_SPHERE), also("sharp depth of field");
-    Flip "Flip between the two", "Shows the traced picture and the kept one in turn", key(Key::J),
-        needs(has_kept, NOTHING_KEPT), on(|f| f.model.view.looked().is_some()), also("kept slot compare blink");
-    KeptWipe "Wipe with the kept picture", "Drag a divider between it and the picture", keys(SHIFT, Key::C),
-        needs(has_kept, NOTHING_KEPT),
-        on(|f| f.model.view.mode() == Some(Mode::Wipe) && f.model.view.compared_kept().is_some() && is_live(f)),
-        also("slot compare");
-    KeptDifference "Difference from the kept picture", "Subtracts it from the picture", keys(SHIFT, Key::X),
-        off(|f| f.model.not_subtractable()),
-        on(|f| f.model.view.mode() == Some(Mode::Difference) && f.model.view.compared_kept().is_some()),
-        also("slot compare subtract");
-    OnlyNoise "Is it only noise?", "Tests whether the two differ by more than chance", keys(SHIFT, Key::N),
-        off(|f| f.model.not_subtractable()), also("kept slot compare same");
+    CompareMine "My picture", "Traces the stage of the picture that is checked, and compares the two",
+        needs(|f| f.model.remembered.mine.is_some(), "No picture is checked; choose Check my picture in the menu File"),
+        unlisted();
+    RenderAtPartnerSize "Render at its size", "Gives the picture the size of the other one; the samples begin anew",
+        unlisted();
     RenderAtSize "Render at this size",
         "Renders one pixel of the picture per pixel of the screen; the samples begin anew", unlisted();
     StopSaving "Stop", "Gives up this render", unlisted();
@@ -315,7 +316,12 @@ table! {
         "Renders its pictures at full size and without noise, which takes some minutes", unlisted();
     StopCompanion "Stop", "Leaves out the pictures that are missing", unlisted();
     GoOnFromKept "Continue from it", "Makes it the picture that is traced, and adds more samples",
-        needs(has_kept, NOTHING_KEPT), unlisted();
+        off(|f| match f.model.view.kept_partner() {
+            Some(kept) if kept.document.is_none() => Some("Open the file to continue it".to_owned()),
+            Some(_) => None,
+            None => Some(NOTHING_KEPT.to_owned()),
+        }),
+        unlisted();
     DeleteKept "Delete", "Deletes the kept picture", needs(has_kept, NOTHING_KEPT), unlisted();
     NextRay "Next ray", "", key(Key::ArrowRight), needs(|f| f.has_paths, NO_PATHS), unlisted();
     PreviousRay "Previous ray", "", key(Key::ArrowLeft), needs(|f| f.has_paths, NO_PATHS), unlisted();
@@ -374,13 +380,13 @@ fn family_rows() -> Vec<Row> {
 }
 
 const NO_SPHERE: &str = "No sphere is selected; click one";
-const NOTHING_KEPT: &str = "No picture is kept; M keeps this one";
+const NOTHING_KEPT: &str = "No kept picture is chosen; M keeps this one";
 const NO_PATHS: &str = "No paths are shown; point at the picture and press T";
 
-const KEPT_IS_SHOWN: &str = "A kept picture is shown; Escape returns to the one that is traced";
+const KEPT_IS_SHOWN: &str = "The other picture is shown; Escape returns to the one that is traced";
 
 fn is_live(snapshot: &Snapshot) -> bool {
-    snapshot.model.view.looked().is_none()
+    !snapshot.model.view.is_hidden()
 }
 
 fn has_selection(snapshot: &Snapshot) -> bool {
@@ -392,7 +398,7 @@ fn has_spheres(snapshot: &Snapshot) -> bool {
 }
 
 fn has_kept(snapshot: &Snapshot) -> bool {
-    snapshot.model.view.kept.chosen().is_some()
+    snapshot.model.view.kept_partner().is_some()
 }
 
 fn no_presentation(snapshot: &Snapshot) -> Option<String> {
@@ -426,6 +432,7 @@ impl Command {
             Command::Recent(_) => "Opens it again",
             Command::Bookmark(_) => "Jumps to this camera",
             Command::Field(_) => "Goes to this field of the controls",
+            Command::CompareWith(partner) => partner.help(),
             _ => self.row().map_or("", |row| row.help),
         }
     }
@@ -468,7 +475,8 @@ impl Snapshot {
         let named = match command {
             Command::Undo => self.undo.map(|change| format!("Undo: {change}")),
             Command::Redo => self.redo.map(|change| format!("Redo: {change}")),
-            Command::Kept(place) => view.kept.get(place).map(|kept| kept.document.title()),
+            Command::Kept(place) => view.kept.get(place).map(|kept| kept.name.clone()),
+            Command::CompareWith(partner) => Some(self.model.partner_name(partner)),
             Command::Bookmark(place) => remembered.bookmarks.get(place).map(|bookmark| bookmark.name.clone()),
             Command::Recent(_) => {
                 self.path(command).and_then(Path::file_name).map(|name| name.display().to_string())
@@ -480,7 +488,10 @@ impl Snapshot {
 
     /// Why a command is unavailable; `None` if it is available.
     pub fn disabled_reason(&self, command: Command) -> Option<String> {
-        command.row().and_then(|row| (row.off)(self))
+        match command {
+            Command::CompareWith(partner) => self.model.no_partner(partner),
+            _ => command.row().and_then(|row| (row.off)(self)),
+        }
     }
 
     /// Whether a command's switch is on; `None` if it is not a switch.
@@ -488,6 +499,7 @@ impl Snapshot {
         match command {
             Command::Stage(stage) => Some(self.document().stage() == Some(stage)),
             Command::Extreme(case) => Some(self.document().case() == Some(case)),
+            Command::CompareWith(partner) => Some(self.model.view.partner == partner),
             _ => command.row()?.on.as_ref().map(|on| on(self)),
         }
     }

@@ -13,7 +13,7 @@ use crate::progressive::{Phase, Status};
 use crate::system::files::pictures_directory;
 use crate::system::memory;
 use eframe::egui::text::{CCursor, CCursorRange};
-use eframe::egui::{self, Align, Key, Label, Layout, Stroke, TextEdit, Ui};
+use eframe::egui::{self, Align, Key, Label, Layout, Stroke, TextEdit, Ui, vec2};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -252,6 +252,7 @@ fn choose(purpose: Purpose, from: &Path) -> Option<PathBuf> {
     let endings: &[&str] = match purpose {
         Purpose::Open => &["png", "ppm", "exr", "toml"],
         Purpose::Check => &["png", "ppm"],
+        Purpose::Compare => &["png", "ppm", "exr"],
         Purpose::Folder => return dialog.pick_folder(),
     };
     dialog.add_filter(endings.join(", "), endings).pick_file()
@@ -268,7 +269,11 @@ fn free_path(path: &Path) -> PathBuf {
 /// A label, and what follows it over the rest of the width, from the right to the left.
 fn labelled<R>(ui: &mut Ui, label: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
-        ui.add_sized([64.0, 24.0], Label::new(label).halign(Align::Min));
+        let layout = Layout::left_to_right(Align::Center).with_main_align(Align::Min);
+        ui.allocate_ui_with_layout(vec2(64.0, 24.0), layout, |ui| {
+            ui.set_min_width(64.0);
+            ui.label(label);
+        });
         ui.with_layout(Layout::right_to_left(Align::Center), add).inner
     })
     .inner
@@ -281,6 +286,7 @@ fn option<T: PartialEq>(ui: &mut Ui, chosen: &mut T, value: T, label: &str, help
         ui.visuals_mut().widgets.inactive.bg_stroke = Stroke::new(1.0, edge);
         ui.radio_value(chosen, value, label);
         ui.spacing_mut().interact_size.y = 16.0;
+        ui.spacing_mut().indent = ui.spacing().icon_width + ui.spacing().icon_spacing;
         ui.indent(label, |ui| small(ui, help));
     });
 }

@@ -47,6 +47,8 @@ pub enum Purpose {
     Open,
     /// To check the picture of the user's own program.
     Check,
+    /// To compare the traced picture with another one.
+    Compare,
     /// The folder in which the dialog of saving saves.
     Folder,
 }
@@ -56,6 +58,7 @@ impl Purpose {
         match self {
             Purpose::Open => "Open",
             Purpose::Check => "Check my picture",
+            Purpose::Compare => "Compare with a file",
             Purpose::Folder => "Folder",
         }
     }

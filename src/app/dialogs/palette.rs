@@ -157,6 +157,8 @@ mod tests {
             ("night", Command::Theme(Theme::Dark)),
             ("save", Command::Save),
             ("png", Command::Save),
+            ("save as", Command::Save),
+            ("speed", Command::CompareDevices),
             ("blur", Command::Field("Defocus angle")),
             ("dof", Command::Field("Defocus angle")),
             ("fov", Command::Field("Field of view")),
@@ -168,6 +170,10 @@ mod tests {
             assert_eq!(first(text), Some(expected), "{text}");
         }
         assert_eq!(first("xyzzy"), None);
+        for text in ["compare", "gpu", "cpu", "factor"] {
+            let found = found(text, &snapshot);
+            assert!(found.iter().any(|found| found.command == Command::CompareDevices), "{text}");
+        }
         for row in ROWS.iter().filter(|row| row.is_listed && row.command != Command::Palette) {
             let found = found(row.name, &snapshot);
             let is_off = snapshot.disabled_reason(row.command).is_some();

@@ -99,9 +99,9 @@ impl Device {
         }
     }
 
-    /// Becomes this device, or the CPU again.
-    pub fn toggle(&mut self, other: Device) {
-        *self = if *self == other { Device::Cpu } else { other };
+    /// This other device, or the CPU again.
+    pub fn toggled(self, other: Device) -> Device {
+        if self == other { Device::Cpu } else { other }
     }
 
     /// The backend for the device, with these lanes and threads instead of those in the options.

@@ -1,10 +1,14 @@
-//! The pictures that the user has kept to compare with. They live in memory until the window closes.
+//! The pictures that the user has kept to compare with, and those of files. They live in memory until the window closes.
 
 use super::Document;
-use crate::film::Film;
+use crate::film::{Film, fixed_point};
+use crate::job::output::Encoding;
+use crate::pictures::Picture;
 use crate::progressive::ReferenceMeans;
+use crate::stages::Transfer;
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureOptions};
 use image::{RgbImage, imageops};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -12,9 +16,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 const SMALL: u32 = 264;
 
 /// A small copy of the picture of a film.
-fn small_copy(context: &Context, film: &Film, document: &Document) -> TextureHandle {
+fn small_copy(context: &Context, film: &Film, transfer: Transfer) -> TextureHandle {
     let (width, height) = (film.width(), film.height());
-    let rgb8 = film.to_rgb8(document.rules().transfer);
+    let rgb8 = film.to_rgb8(transfer);
     let full = RgbImage::from_raw(width, height, rgb8).unwrap_or_default();
     let scale = (f64::from(SMALL) / f64::from(width.max(height))).min(1.0);
     let [width, height] = [width, height].map(|side| ((f64::from(side) * scale).round() as u32).max(1));
@@ -27,10 +31,16 @@ fn small_copy(context: &Context, film: &Film, document: &Document) -> TextureHan
 pub struct Kept {
     /// A number that no other kept picture has.
     pub number: u64,
-    /// The document that it shows.
-    pub document: Document,
-    /// Its exact sums.
+    /// What it shows, in words.
+    pub name: String,
+    /// The document that it shows; none for the picture of a file.
+    pub document: Option<Document>,
+    /// How its light becomes bytes.
+    pub transfer: Transfer,
+    /// Its exact sums. The picture of a file counts as one sample.
     pub film: Arc<Film>,
+    /// The picture of a file, with the steps of its format.
+    pub picture: Option<Picture>,
     /// Tracing time of its samples, if known.
     pub seconds: Option<f64>,
     /// Its picture to subtract from another.
@@ -42,14 +52,47 @@ pub struct Kept {
 impl Kept {
     /// Keeps a film of `document` that has samples.
     pub fn new(context: &Context, document: Document, film: Film, seconds: Option<f64>) -> Self {
+        let (name, transfer) = (document.title(), document.rules().transfer);
+        Kept { document: Some(document), seconds, ..Kept::of(context, name, Arc::new(film), transfer) }
+    }
+
+    /// Reads the picture of a file. Where it says nothing else, its light has become bytes by `transfer`.
+    ///
+    /// # Errors
+    /// If it cannot be read or does not fit into memory.
+    pub fn read(context: &Context, path: &Path, transfer: Transfer) -> Result<Self, String> {
+        let words = |error: &dyn std::fmt::Display| error.to_string();
+        let picture = Picture::read(path, Some(Encoding::Book(transfer))).map_err(|error| words(&error))?;
+        let film = match &picture.film {
+            Some(film) => Arc::clone(film),
+            None => {
+                let film = Film::try_new(picture.width, picture.height, 1);
+                let mut film = film.map_err(|error| words(&error))?;
+                // A file stores no light above white, and marks it so.
+                let known = |x: f64| if x.is_nan() { picture.limit.min(1.0) } else { x.max(0.0) };
+                for (sum, pixel) in film.halves_mut()[0].iter_mut().zip(&picture.pixels) {
+                    *sum = fixed_point(pixel.map(known)).unwrap_or_default();
+                }
+                film.record(0..1, 0).map_err(|error| words(&error))?;
+                Arc::new(film)
+            }
+        };
+        let name = path.file_name().unwrap_or(path.as_os_str()).display().to_string();
+        Ok(Kept { picture: Some(picture), ..Kept::of(context, name, film, transfer) })
+    }
+
+    fn of(context: &Context, name: String, film: Arc<Film>, transfer: Transfer) -> Self {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         Kept {
             number: COUNT.fetch_add(1, Ordering::Relaxed),
-            thumbnail: small_copy(context, &film, &document),
+            thumbnail: small_copy(context, &film, transfer),
             means: Arc::new(ReferenceMeans::of(&film)),
-            document,
-            film: Arc::new(film),
-            seconds,
+            document: None,
+            picture: None,
+            seconds: None,
+            name,
+            transfer,
+            film,
         }
     }
 
@@ -66,8 +109,10 @@ impl Kept {
     /// Bytes that it takes.
     pub fn bytes(&self) -> u64 {
         let [width, height] = self.size();
-        let of_means = size_of_val(self.means.means.as_slice()) as u64;
-        Film::bytes(width, height, self.film.halves().len()) + of_means
+        let of_means = size_of_val(self.means.means.as_slice());
+        let of_picture =
+            self.picture.as_ref().map_or(0, |picture| 2 * size_of_val(picture.pixels.as_slice()));
+        Film::bytes(width, height, self.film.halves().len()) + (of_means + of_picture) as u64
     }
 }
 
@@ -75,7 +120,6 @@ impl Kept {
 #[derive(Clone, Default)]
 pub struct KeptList {
     pictures: Vec<Arc<Kept>>,
-    chosen: Option<usize>,
 }
 
 impl KeptList {
@@ -87,34 +131,18 @@ impl KeptList {
         self.pictures.get(place)
     }
 
+    /// The picture of this number.
+    pub fn find(&self, number: u64) -> Option<&Arc<Kept>> {
+        self.iter().find(|kept| kept.number == number)
+    }
+
     /// As a kept picture is called in sentences.
     pub fn title(&self, kept: &Kept) -> String {
-        format!("{}: {}", self.place(kept) + 1, kept.document.title())
+        format!("{}: {}", self.place(kept) + 1, kept.name)
     }
 
-    /// As a kept picture is called where there is little room.
-    pub fn short_title(&self, kept: &Kept) -> String {
-        format!("kept {}", self.place(kept) + 1)
-    }
-
-    fn place(&self, kept: &Kept) -> usize {
+    pub fn place(&self, kept: &Kept) -> usize {
         self.pictures.iter().position(|other| other.number == kept.number).unwrap_or_default()
-    }
-
-    /// The place of the picture that commands mean.
-    pub fn chosen(&self) -> Option<usize> {
-        self.chosen
-    }
-
-    /// The picture that commands mean.
-    pub fn meant(&self) -> Option<&Arc<Kept>> {
-        self.get(self.chosen?)
-    }
-
-    pub fn choose(&mut self, place: usize) {
-        if place < self.pictures.len() {
-            self.chosen = Some(place);
-        }
     }
 
     /// Adds a picture. Returns its place.
@@ -124,13 +152,8 @@ impl KeptList {
     }
 
     /// Removes a picture; later ones move up.
-    pub fn delete(&mut self, place: usize) {
-        if place >= self.pictures.len() {
-            return;
-        }
-        self.pictures.remove(place);
-        let after = |other: usize| (other != place).then(|| other - usize::from(other > place));
-        self.chosen = self.chosen.and_then(after).or_else(|| self.pictures.len().checked_sub(1));
+    pub fn delete(&mut self, number: u64) {
+        self.pictures.retain(|kept| kept.number != number);
     }
 
     /// Memory of all of them, bytes.

@@ -1,10 +1,14 @@
 //! Everything that the user has chosen.
 
-use super::{Device, DeviceOptions, Document, Mode, Remembered, Show, Tab, ViewState, partner};
+use super::{Device, DeviceOptions, Document, Mode, Partner, Remembered, Show, Tab, ViewState};
 use crate::backends::BackendChoice;
+use crate::job::render::SamplerKind;
 use crate::progressive::Stop;
 use crate::stages::{Shading, Stage};
 use std::sync::Arc;
+
+/// The longest paths that a picture can be compared with, in rays.
+const DEPTHS: [u32; 4] = [2, 4, 10, 50];
 
 /// A presentation: full screen, the picture with large captions, no panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,27 +68,91 @@ impl Model {
 
     /// The backend for the chosen device, lanes and threads.
     pub fn backend(&self) -> BackendChoice {
-        let Remembered { device, lanes, threads, .. } = self.remembered;
-        device.backend(&self.devices, lanes, threads)
+        self.backend_of(self.remembered.device)
     }
 
-    /// Why this picture cannot be compared; `None` if it can.
+    /// Traces on this device. If the picture is compared with it, the two change sides.
+    pub fn choose_device(&mut self, device: Device) {
+        let before = std::mem::replace(&mut self.remembered.device, device);
+        if self.view.partner == Partner::Device(device) && before != device {
+            self.view.partner = Partner::Device(before);
+        }
+    }
+
+    /// The backend for another device, with the chosen lanes and threads.
+    pub fn backend_of(&self, device: Device) -> BackendChoice {
+        device.backend(&self.devices, self.remembered.lanes, self.remembered.threads)
+    }
+
+    /// All partners to choose from, without the other stages: those with which the picture has something in common.
+    pub fn partners(&self) -> Vec<Partner> {
+        let (document, device) = (&self.document, self.remembered.device);
+        let mut partners: Vec<Partner> =
+            Partner::usual(document).map(|_| Partner::Usual).into_iter().collect();
+        if document.no_rays().is_none() {
+            let devices = [Device::Cpu, Device::Gpu, Device::Reference].into_iter();
+            partners.extend(devices.filter(|other| *other != device).map(Partner::Device));
+            if Partner::usual(document) != Some(Partner::Book) && document.origin.is_other_by_the_book() {
+                partners.push(Partner::Book);
+            }
+        }
+        if document.settings.estimate_error {
+            partners.push(Partner::Raw);
+        }
+        if document.rules().shading == Shading::Path {
+            let settings = &document.settings;
+            let samplers = SamplerKind::ALL.into_iter().filter(|other| *other != settings.sampler);
+            partners.extend(samplers.map(Partner::Sampler));
+            partners
+                .extend(DEPTHS.into_iter().filter(|rays| *rays != settings.max_depth).map(Partner::Depth));
+        }
+        partners.extend(self.view.kept.iter().map(|kept| Partner::Kept(kept.number)));
+        partners
+    }
+
+    /// The name of a partner, for [`Partner::Usual`] that of the picture.
+    pub fn partner_name(&self, partner: Partner) -> String {
+        let meant = match partner {
+            Partner::Usual => Partner::usual(&self.document).unwrap_or_default(),
+            _ => partner,
+        };
+        meant.names(&self.view.kept)[0].clone()
+    }
+
+    /// The names of both sides of a comparison, the other one first: on the picture, and in a column of numbers.
+    pub fn side_names(&self) -> [[String; 2]; 2] {
+        let partner = self.view.partner(&self.document).unwrap_or_default();
+        [partner.names(&self.view.kept), partner.names_of_mine(&self.document, self.remembered.device)]
+    }
+
+    /// The other device, if the picture is compared with what that traces.
+    pub fn other_device(&self) -> Option<Device> {
+        match self.view.compared(&self.document)? {
+            Partner::Device(device) => Some(device),
+            _ => None,
+        }
+    }
+
+    /// Why the picture cannot be compared with its partner; `None` if it can.
     pub fn nothing_to_compare(&self) -> Option<String> {
-        let document = &self.document;
-        let has_other = match document.stage() {
-            Some(stage) => partner(stage).is_some(),
-            None => document.origin.is_other_by_the_book(),
-        };
-        (!has_other).then(|| "There is nothing to compare this picture with".to_owned())
+        match self.view.partner(&self.document) {
+            Some(partner) => self.no_partner(partner),
+            None => Some("There is nothing to compare this picture with; choose something".to_owned()),
+        }
     }
 
-    /// Why the difference from the kept picture is unavailable; `None` if it is available.
+    /// Why this partner is unavailable; `None` if it is available.
+    pub fn no_partner(&self, partner: Partner) -> Option<String> {
+        match partner {
+            Partner::Device(device) => device.unavailable(),
+            _ => None,
+        }
+    }
+
+    /// Why the two cannot be subtracted; `None` if they can.
     pub fn not_subtractable(&self) -> Option<String> {
-        let Some(kept) = self.view.kept.meant() else {
-            return Some("No picture is kept; M keeps this one".to_owned());
-        };
-        let ([a, b], [x, y]) = (kept.size(), self.document.size());
-        ([a, b] != [x, y]).then(|| format!("The kept picture is {a} × {b} and this one {x} × {y}"))
+        let ([a, b], [x, y]) = (self.view.kept_partner()?.size(), self.document.size());
+        ([a, b] != [x, y]).then(|| format!("The other picture is {a} × {b} and this one {x} × {y}"))
     }
 
     /// Why exposure and channels have no effect; `None` if they have one.

@@ -1,10 +1,8 @@
 //! The view in the viewport: a view of the film, or a comparison with another picture.
 
-use super::{CheckedScene, Document, Kept, KeptList, Origin, Show, Tone};
+use super::{Document, Kept, KeptList, Partner, Show, Tone};
 use crate::denoise::Denoised;
-use crate::job::recipe::Recipe;
 use crate::progressive::{ReferenceMeans, Stop, View};
-use crate::stages::Stage;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -13,52 +11,10 @@ use std::sync::Arc;
 pub enum Mode {
     /// The pictures are on the two sides of a divider.
     Wipe,
+    /// The other picture hides this one.
+    Flip,
     /// A heat map of the difference.
     Difference,
-}
-
-/// The kind of picture to compare with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum With {
-    /// The stage that belongs to this one; without a stage, the book's own arithmetic.
-    #[default]
-    Stage,
-    /// The book's own arithmetic, even if there is another stage to compare with.
-    Book,
-    /// The chosen kept picture.
-    Kept,
-}
-
-/// The picture that is traced for comparison with the main picture.
-#[derive(Clone)]
-pub enum Other {
-    /// Another stage.
-    Stage(&'static Stage),
-    /// The same picture, with its scene as edited, by the book's own arithmetic.
-    ByTheBook(Arc<Origin>, Arc<CheckedScene>),
-}
-
-impl PartialEq for Other {
-    /// Origins and scenes are immutable, so comparing their addresses is enough.
-    fn eq(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Other::Stage(a), Other::Stage(b)) => a == b,
-            (Other::ByTheBook(a, of_a), Other::ByTheBook(b, of_b)) => {
-                Arc::ptr_eq(a, b) && Arc::ptr_eq(of_a, of_b)
-            }
-            _ => false,
-        }
-    }
-}
-
-impl Other {
-    /// The origin of the other picture.
-    pub fn origin(&self) -> Origin {
-        match self {
-            Other::Stage(stage) => Origin::of_stage(stage),
-            Other::ByTheBook(mine, scene) => mine.by_the_book(scene),
-        }
-    }
 }
 
 /// The denoised picture of a run's film, or why there is none.
@@ -70,8 +26,9 @@ pub struct ViewState {
     show: Show,
     #[serde(skip)]
     mode: Option<Mode>,
+    /// The other picture of a comparison.
     #[serde(skip)]
-    with: With,
+    pub partner: Partner,
     /// Position of the wipe's divider, `0..=1` of the picture's width.
     #[serde(skip)]
     pub divider: f32,
@@ -98,23 +55,34 @@ impl ViewState {
         self.mode
     }
 
-    /// The kind of picture to compare with. Without a comparison it is the stage.
-    pub fn with(&self) -> With {
-        self.with
-    }
-
-    /// The kept picture that this one is compared with, if it is.
-    pub fn compared_kept(&self) -> Option<&Arc<Kept>> {
-        self.kept.meant().filter(|_| self.mode.is_some() && self.with == With::Kept)
-    }
-
-    /// Keeps a picture, and chooses it unless another one is compared with. Returns its place.
-    pub fn keep(&mut self, kept: Kept) -> usize {
-        let place = self.kept.add(kept);
-        if self.compared_kept().is_none() {
-            self.kept.choose(place);
+    /// The other picture if that of `document` is compared.
+    pub fn partner(&self, document: &Document) -> Option<Partner> {
+        match self.partner {
+            Partner::Usual => Partner::usual(document),
+            Partner::Kept(number) if self.kept.find(number).is_none() => Partner::usual(document),
+            chosen => Some(chosen),
         }
-        place
+    }
+
+    /// The other picture, if that of `document` is compared now.
+    pub fn compared(&self, document: &Document) -> Option<Partner> {
+        self.mode().and_then(|_| self.partner(document))
+    }
+
+    /// The kept picture that commands mean.
+    pub fn kept_partner(&self) -> Option<&Arc<Kept>> {
+        match self.partner {
+            Partner::Kept(number) => self.kept.find(number),
+            _ => None,
+        }
+    }
+
+    /// Keeps a picture, to compare with unless another one is compared with. Returns its place.
+    pub fn keep(&mut self, kept: Kept) -> usize {
+        if self.mode.is_none() {
+            self.partner = Partner::Kept(kept.number);
+        }
+        self.kept.add(kept)
     }
 
     /// Shows only this view of the film.
@@ -129,53 +97,68 @@ impl ViewState {
     }
 
     /// Starts a comparison, or ends it if it is already active.
-    pub fn toggle(&mut self, mode: Mode, with: With) {
-        let is_on = self.mode == Some(mode) && self.with == with && self.looked().is_none();
+    pub fn toggle(&mut self, mode: Mode) {
         self.show = Show::Picture;
-        (self.mode, self.with) = if is_on { (None, With::Stage) } else { (Some(mode), with) };
+        self.mode = (self.mode != Some(mode)).then_some(mode);
         self.divider = 0.5;
     }
 
-    /// Shows a kept picture in place of the traced one: a wipe whose divider is at the right edge.
-    pub fn look(&mut self, place: usize) {
-        self.kept.choose(place);
-        (self.mode, self.with, self.show) = (Some(Mode::Wipe), With::Kept, Show::Picture);
-        self.divider = 1.0;
-    }
-
-    /// The place of the kept picture that hides the traced one.
-    pub fn looked(&self) -> Option<usize> {
-        let is_hidden = self.mode == Some(Mode::Wipe) && self.with == With::Kept && self.divider == 1.0;
-        self.kept.chosen().filter(|_| is_hidden)
-    }
-
-    /// Shows the traced picture, if a kept one hides it.
-    pub fn end_look(&mut self) {
-        if self.looked().is_some() {
-            self.end_comparison();
+    /// Compares with this partner.
+    pub fn compare_with(&mut self, partner: Partner) {
+        self.partner = partner;
+        self.is_denoised |= partner == Partner::Raw;
+        if self.mode.is_none() {
+            self.toggle(Mode::Wipe);
         }
     }
 
-    /// Shows the traced picture and the chosen kept one in turn.
-    pub fn flip(&mut self) {
-        match self.kept.chosen() {
-            Some(place) if self.looked().is_none() => self.look(place),
-            _ => self.end_look(),
+    /// Filters the noise away, or not. Without that, there is no other picture without denoising.
+    pub fn toggle_denoise(&mut self) {
+        self.is_denoised = !self.is_denoised;
+        if self.partner == Partner::Raw {
+            (self.mode, self.partner) = (None, Partner::Usual);
+        }
+    }
+
+    /// Shows a kept picture in place of the traced one.
+    pub fn look(&mut self, place: usize) {
+        if let Some(kept) = self.kept.get(place) {
+            (self.partner, self.mode, self.show) =
+                (Partner::Kept(kept.number), Some(Mode::Flip), Show::Picture);
+        }
+    }
+
+    /// Whether the other picture hides the traced one.
+    pub fn is_hidden(&self) -> bool {
+        self.mode == Some(Mode::Flip)
+    }
+
+    /// Shows the traced picture, if another one hides it.
+    pub fn end_look(&mut self) {
+        if self.is_hidden() {
+            self.end_comparison();
         }
     }
 
     /// Deletes the chosen kept picture. A comparison with it ends.
     pub fn delete_kept(&mut self) {
-        let Some(place) = self.kept.chosen() else { return };
-        if self.with == With::Kept {
+        if let Partner::Kept(number) = self.partner {
             self.end_comparison();
+            self.kept.delete(number);
+            self.partner = self.kept.iter().last().map_or(Partner::Usual, |last| Partner::Kept(last.number));
         }
-        self.kept.delete(place);
     }
 
-    /// Ends the comparison. The next one does not begin with its picture.
+    /// Another picture is shown, which has its own partner, unless one of another kind is compared with.
+    pub fn leave_partner(&mut self) {
+        if self.mode.is_none() || matches!(self.partner, Partner::Stage(_)) {
+            self.partner = Partner::Usual;
+        }
+    }
+
+    /// Ends the comparison.
     pub fn end_comparison(&mut self) {
-        (self.mode, self.with) = (None, With::Stage);
+        self.mode = None;
     }
 
     /// The view for resolving the film of this run, or its denoised picture; `other` is the film of the second picture, once
@@ -210,25 +193,4 @@ impl ViewState {
             None => stop,
         }
     }
-
-    /// The picture that is traced for comparison with `document`.
-    pub fn compared(&self, document: &Document) -> Option<Other> {
-        let origin = &document.origin;
-        let by_the_book = || Other::ByTheBook(Arc::clone(origin), Arc::clone(&document.checked));
-        match (self.mode?, self.with, document.stage()) {
-            (_, With::Kept, _) => None,
-            (_, With::Stage, Some(stage)) => partner(stage).map(Other::Stage),
-            _ => origin.is_other_by_the_book().then(by_the_book),
-        }
-    }
-}
-
-/// The stage that `stage` is compared with, if one teaches something.
-pub fn partner(stage: &Stage) -> Option<&'static Stage> {
-    Stage::find(stage.pair?).ok()
-}
-
-/// Whether the recipes differ only in their cameras.
-pub fn differ_in_camera(a: &Recipe, b: &Recipe) -> bool {
-    a.camera != b.camera && a.rules == b.rules && a.scene == b.scene
 }

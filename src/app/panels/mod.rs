@@ -1,6 +1,7 @@
 //! The panels around the picture.
 
 pub mod bar;
+pub mod compare;
 pub mod controls;
 pub mod first_steps;
 pub mod plot;

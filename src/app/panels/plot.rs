@@ -1,27 +1,31 @@
 //! The plot of error against tracing seconds, on logarithmic axes: a curve for each backend since the last restart, the
 //! expected continuation, and the goal; and when a render will reach its goal.
 
-use crate::app::commands::Snapshot;
+use super::compare;
+use crate::app::commands::{PanelContext, Snapshot};
+use crate::app::model::Device;
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{compact, hint, tip};
+use crate::app::toolkit::widgets::{compact, hint, small, tip};
+use crate::measure::grouped;
 use crate::numbers::statistics::fit::{Point, Prediction, predict};
 use crate::progressive::{HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, Status};
-use eframe::egui::{self, Rangef, Sense, Sides, Ui, Vec2b};
+use eframe::egui::{self, Color32, Rangef, Sense, Sides, Ui, UiBuilder, Vec2b};
 use egui_plot::{
     AxisHints, Corner, HLine, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints, Points,
     uniform_grid_spacer,
 };
+use std::sync::Arc;
 
 /// Predictions more than this many seconds ahead are not shown.
 const FARTHEST: f64 = 1e6;
 
-/// Draws the plot.
-pub fn ui(ui: &mut Ui, snapshot: &Snapshot) {
-    let status = &snapshot.status;
+/// Draws the plot, and what tells two devices apart.
+pub fn ui(ui: &mut Ui, cx: &PanelContext) {
+    let status = &cx.status;
     if points(status).is_empty() {
         hint(
             ui,
-            match snapshot.document().settings.estimate_error {
+            match cx.document().settings.estimate_error {
                 true => "The error is known after four samples per pixel.",
                 false => "Switch on \u{201c}Estimate the error\u{201d} under Tracer.",
             },
@@ -34,25 +38,99 @@ pub fn ui(ui: &mut Ui, snapshot: &Snapshot) {
         |ui| {
             let copy = ui.button("Copy");
             if tip(ui, copy, "Copies the points of the curves as a table (CSV)", None).clicked() {
-                ui.ctx().copy_text(csv(&status.history));
+                let other = cx.other.iter().flat_map(|other| &other.history);
+                ui.ctx().copy_text(csv(cx.earlier.iter().chain(&status.history).chain(other)));
             }
         },
     );
-    plot(ui, snapshot.document().stop.noise, status);
+    let race = Race::of(cx);
+    let (room, width) = (ui.available_rect_before_wrap(), if race.is_some() { NUMBERS } else { 0.0 });
+    if let Some(race) = race {
+        let left = UiBuilder::new().max_rect(room.with_max_x(room.left() + width - 16.0));
+        ui.scope_builder(left, |ui| race.ui(ui, cx));
+    }
+    let right = UiBuilder::new().max_rect(room.with_min_x(room.left() + width));
+    ui.scope_builder(right, |ui| plot(ui, cx));
 }
 
-fn plot(ui: &mut Ui, goal: Option<f64>, status: &Status) {
-    let &theme::Colours { first: of_cpu, second: of_gpu, third: expected, fourth: of_both, .. } =
-        theme::colours(ui);
-    let (weak, strong) = (ui.visuals().weak_text_color(), ui.visuals().strong_text_color());
-    let style = |backend: &str| match backend {
-        "cpu" => (of_cpu, "CPU"),
-        "gpu" => (of_gpu, "GPU"),
-        "cpu,gpu" => (of_both, "both"),
-        _ => (strong, "reference"),
-    };
-    let curves = curves(&status.history);
+/// Width of the numbers beside the plot, points.
+const NUMBERS: f32 = 264.0;
+
+/// The picture traced by one device, and by another.
+struct Race([(Device, Arc<Status>); 2]);
+
+impl Race {
+    fn of(cx: &Snapshot) -> Option<Race> {
+        let other = cx.model.other_device()?;
+        let mine = (cx.model.remembered.device, Arc::clone(&cx.status));
+        Some(Race([mine, (other, Arc::clone(cx.other.as_ref()?))]))
+    }
+
+    /// How much faster a device is than the other one; `None` until both have traced, each alone.
+    fn factor(&self) -> Option<(Device, f64)> {
+        let [(mine, status), (other, of_other)] = &self.0;
+        let speeds = [status, of_other].map(|status| status.rays_per_second());
+        let is_pure = |status: &Status| {
+            status.contributions.iter().all(|part| part.backend.name == status.contributions[0].backend.name)
+        };
+        let is_known = speeds.iter().all(|speed| *speed > 0.0) && is_pure(status) && is_pure(of_other);
+        is_known.then(|| {
+            if speeds[0] >= speeds[1] {
+                (*mine, speeds[0] / speeds[1])
+            } else {
+                (*other, speeds[1] / speeds[0])
+            }
+        })
+    }
+
+    fn ui(&self, ui: &mut Ui, cx: &PanelContext) {
+        ui.spacing_mut().item_spacing.y = 4.0;
+        for (device, status) in &self.0 {
+            let name = device.label();
+            let speed = compact(two_digits(status.rays_per_second() / 1e6));
+            let words = egui::RichText::new(format!("{name}: {speed} million rays per second"));
+            ui.label(words.strong().color(style(ui, device.name()).0));
+            let error = status.error.map_or_else(String::new, |error| {
+                format!(", error {} %", compact(two_digits(100.0 * error.rmse)))
+            });
+            let samples = grouped(status.samples_per_pixel);
+            let seconds = compact(two_digits(status.trace.as_secs_f64()));
+            small(ui, format!("{samples} samples per pixel in {seconds} s{error}"));
+        }
+        match self.factor() {
+            Some((device, factor)) => {
+                let name = device.label();
+                ui.label(format!("{name} is {} times as fast.", compact(two_digits(factor))));
+            }
+            None if self.0[0].1.contributions.len() > 1 => {
+                _ = hint(ui, "Several devices have traced this picture. R starts again, to measure one.");
+            }
+            None => {}
+        }
+        compare::verdict(ui, cx);
+    }
+}
+
+fn plot(ui: &mut Ui, cx: &Snapshot) {
+    let (status, goal) = (&cx.status, cx.document().stop.noise);
+    let &theme::Colours { third: expected, fourth: of_both, .. } = theme::colours(ui);
+    let weak = ui.visuals().weak_text_color();
+    let style = |backend: &str| style(ui, backend);
     let now = points(status).last().map(at);
+    let mut drawn: Vec<(Color32, String, Vec<[f64; 2]>)> = Vec::new();
+    for (backend, points) in curves(&cx.earlier, None) {
+        drawn.push((style(backend).0.gamma_multiply(0.5), format!("{}, before", style(backend).1), points));
+    }
+    for (backend, points) in curves(&status.history, newest(status)) {
+        drawn.push((style(backend).0, style(backend).1.to_owned(), points));
+    }
+    if let Some(other) = &cx.other {
+        let is_device = cx.model.other_device().is_some();
+        let [[_, name], _] = cx.model.side_names();
+        for (backend, points) in curves(&other.history, newest(other)) {
+            drawn.push((if is_device { style(backend).0 } else { of_both }, name.clone(), points));
+        }
+    }
     // From the newest error to the goal.
     let ahead = prediction(status, goal).zip(now).zip(goal).map(|((ahead, [x, y]), goal)| {
         let seconds = 10_f64.powf(x) + ahead.time.min(FARTHEST);
@@ -61,8 +139,11 @@ fn plot(ui: &mut Ui, goal: Option<f64>, status: &Status) {
     let axis = |hints: AxisHints<'static>, name: &str| {
         hints.label(egui::RichText::new(name).small()).formatter(|mark, _| power(mark.value))
     };
-    let plot = Plot::new("error")
-        .legend(Legend::default().position(Corner::LeftBottom))
+    let plot = Plot::new("error");
+    // The numbers of two devices have the colours of their curves.
+    let is_named = Race::of(cx).is_some();
+    let plot = if is_named { plot } else { plot.legend(Legend::default().position(Corner::RightTop)) };
+    let plot = plot
         .allow_drag(false)
         .allow_zoom(Vec2b::FALSE)
         .allow_scroll(false)
@@ -81,7 +162,8 @@ fn plot(ui: &mut Ui, goal: Option<f64>, status: &Status) {
             let (HoverPosition::NearDataPoint { position: place, .. }
             | HoverPosition::Elsewhere { position: place }) = hover;
             let place = [place.x, place.y];
-            let point = status.history.iter().find(|point| of_history(point) == place);
+            let other = cx.other.iter().flat_map(|other| &other.history);
+            let point = status.history.iter().chain(other).find(|point| of_history(point) == place);
             let samples = point
                 .map_or_else(String::new, |point| format!("{} samples per pixel\n", point.samples_per_pixel));
             let [seconds, error] = place.map(|power| compact(10_f64.powf(power)));
@@ -97,15 +179,22 @@ fn plot(ui: &mut Ui, goal: Option<f64>, status: &Status) {
             let line = Line::new("expected", PlotPoints::from(ahead)).color(expected);
             plot.line(line.style(LineStyle::dashed_dense()).width(1.5).allow_hover(false));
         }
-        for (place, (backend, points)) in curves.iter().enumerate() {
-            // The newest estimate follows after the last point.
-            let newest = now.filter(|_| place + 1 == curves.len());
-            let line = points.iter().copied().chain(newest).collect::<Vec<_>>();
-            let (colour, name) = style(backend);
-            plot.line(Line::new(name, line).color(colour).width(1.5));
-            plot.points(Points::new(name, points.clone()).color(colour).radius(2.5));
+        for (colour, name, points) in drawn {
+            plot.points(Points::new(name.clone(), points.clone()).color(colour).radius(2.5));
+            plot.line(Line::new(name, points).color(colour).width(1.5));
         }
     });
+}
+
+/// The colour and the name of a backend's curve.
+fn style(ui: &Ui, backend: &str) -> (Color32, &'static str) {
+    let &theme::Colours { first: of_cpu, second: of_gpu, fourth: of_both, .. } = theme::colours(ui);
+    match backend {
+        "cpu" => (of_cpu, "CPU"),
+        "gpu" => (of_gpu, "GPU"),
+        "cpu,gpu" => (of_both, "both"),
+        _ => (ui.visuals().strong_text_color(), "reference"),
+    }
 }
 
 /// Rounds to two significant digits.
@@ -113,17 +202,25 @@ fn two_digits(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }
 
-/// Splits the history into one curve for each backend; a curve begins where the previous one ends.
-fn curves(history: &[HistoryPoint]) -> Vec<(&'static str, Vec<[f64; 2]>)> {
+/// The backend that traces, and the newest error.
+fn newest(status: &Status) -> Option<(&'static str, [f64; 2])> {
+    Some((status.backend.as_ref()?.name, at(points(status).last()?)))
+}
+
+/// Splits a history and the newest point into one curve for each backend; a curve begins where the previous one ends,
+/// unless a render has begun there.
+fn curves(
+    history: &[HistoryPoint],
+    newest: Option<(&'static str, [f64; 2])>,
+) -> Vec<(&'static str, Vec<[f64; 2]>)> {
     let mut curves: Vec<(&'static str, Vec<[f64; 2]>)> = Vec::new();
-    for point in history.iter().filter(|point| point.rmse_estimate > 0.0 && point.trace_seconds > 0.0) {
-        let at = of_history(point);
+    let known = history.iter().filter(|point| point.rmse_estimate > 0.0 && point.trace_seconds > 0.0);
+    for (backend, at) in known.map(|point| (point.backend, of_history(point))).chain(newest) {
+        let from =
+            curves.last().and_then(|(_, points)| points.last().copied()).filter(|from| from[0] <= at[0]);
         match curves.last_mut() {
-            Some((name, points)) if *name == point.backend => points.push(at),
-            last => {
-                let from = last.and_then(|(_, points)| points.last().copied());
-                curves.push((point.backend, from.into_iter().chain([at]).collect()));
-            }
+            Some((name, points)) if *name == backend && from.is_some() => points.push(at),
+            _ => curves.push((backend, from.into_iter().chain([at]).collect())),
         }
     }
     curves
@@ -139,14 +236,14 @@ fn at(point: &Point) -> [f64; 2] {
 }
 
 /// The points as CSV with a header line.
-fn csv(history: &[HistoryPoint]) -> String {
+fn csv<'a>(history: impl Iterator<Item = &'a HistoryPoint>) -> String {
     let line = |point: &HistoryPoint| {
         let HistoryPoint { backend, samples_per_pixel, trace_seconds, rmse_estimate, rel_mse_estimate } =
             point;
         format!("{backend},{samples_per_pixel},{trace_seconds},{rmse_estimate},{rel_mse_estimate}\n")
     };
     let header = "backend,samples_per_pixel,trace_seconds,rmse_estimate,rel_mse_estimate\n";
-    history.iter().map(line).fold(header.to_owned(), |text, line| text + &line)
+    history.map(line).fold(header.to_owned(), |text, line| text + &line)
 }
 
 /// A label of a logarithmic axis.
@@ -209,13 +306,13 @@ mod tests {
     fn each_backend_has_a_curve_that_joins_the_one_before() {
         let exact = HistoryPoint { rmse_estimate: 0.0, ..point("cpu", 4, 3.0) };
         let history = [point("cpu", 2, 1.0), point("cpu", 4, 2.0), exact, point("gpu", 8, 2.1)];
-        let found = curves(&history);
+        let found = curves(&history, None);
         let names: Vec<_> = found.iter().map(|(name, points)| (*name, points.len())).collect();
         assert_eq!(names, [("cpu", 2), ("gpu", 2)]);
         assert_eq!(found[0].1[1], found[1].1[0]);
         let text = "backend,samples_per_pixel,trace_seconds,rmse_estimate,rel_mse_estimate\n\
                     cpu,2,1,0.07071067811865475,0.1\n";
-        assert_eq!(csv(&history[..1]), text);
+        assert_eq!(csv(history[..1].iter()), text);
     }
 
     #[test]

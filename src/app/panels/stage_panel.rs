@@ -1,10 +1,8 @@
 //! The text about the stage: what it adds, what to look for, and what to compare it with.
 
 use crate::app::commands::{Command, PanelContext};
-use crate::app::model::{Document, With, partner};
-use crate::app::toolkit::widgets::{
-    add_command, choice, command_button, command_switch, hint, primary, small,
-};
+use crate::app::model::Document;
+use crate::app::toolkit::widgets::{add_command, command_button, hint, primary, small};
 use crate::measure::stress::Case;
 use crate::stages::Stage;
 use eframe::egui::{Label, Link, RichText, Ui};
@@ -13,10 +11,9 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
     let document = cx.document();
     match (document.stage(), document.case()) {
         (Some(stage), _) => stage_ui(ui, stage, cx),
-        (None, Some(case)) => case_ui(ui, case, cx),
+        (None, Some(case)) => case_ui(ui, case),
         (None, None) => recipe_ui(ui, document),
     }
-    compare_ui(ui, cx);
     // At the end, so that it moves nothing.
     if document.has_changed_scene() || document.camera != document.origin.recipe.camera {
         ui.add_space(8.0);
@@ -75,22 +72,6 @@ fn show_me(ui: &mut Ui, stage: &Stage, cx: &PanelContext) {
     }
 }
 
-/// The picture to compare with and how, for stages that have one.
-fn compare_ui(ui: &mut Ui, cx: &PanelContext) {
-    let is_book = cx.model.view.with() == With::Book;
-    let other = match cx.document().stage().and_then(partner) {
-        _ if is_book => "The book\u{2019}s arithmetic".to_owned(),
-        Some(other) => format!("{} {}", other.section, other.title),
-        None => return,
-    };
-    ui.add_space(4.0);
-    small(ui, "Compare with");
-    ui.add_space(-4.0);
-    ui.add(Label::new(other).wrap());
-    let wipe = if is_book { Command::BookArithmetic } else { Command::Wipe };
-    command_switch(ui, cx, 0.0, &[("Wipe", wipe), ("Difference", Command::Difference)]);
-}
-
 /// Text about a scene that is not a stage.
 fn recipe_ui(ui: &mut Ui, document: &Document) {
     let scene = document.scene();
@@ -99,7 +80,7 @@ fn recipe_ui(ui: &mut Ui, document: &Document) {
 }
 
 /// Text about an extreme scene: what makes it difficult and what to watch.
-fn case_ui(ui: &mut Ui, case: &Case, cx: &PanelContext) {
+fn case_ui(ui: &mut Ui, case: &Case) {
     title(ui, case.family.title, case.title());
     let watch = case.watch.map_or("", |watch| watch.look_for);
     for (heading, text) in [
@@ -109,8 +90,4 @@ fn case_ui(ui: &mut Ui, case: &Case, cx: &PanelContext) {
     ] {
         paragraph(ui, heading, text);
     }
-    ui.add_space(4.0);
-    let command = Command::BookArithmetic;
-    let button = choice(ui, cx.is_on(command), command.name());
-    add_command(ui, cx, command, button);
 }

@@ -100,9 +100,13 @@ pub fn sentence(snapshot: &Snapshot) -> String {
         return format!("Not rendered: {reason}");
     }
     let view = &snapshot.model.view;
-    if let Some(kept) = view.looked().and_then(|place| view.kept.get(place)) {
-        let (title, samples) = (view.kept.title(kept), grouped(kept.samples()));
-        return format!("Kept {title}, {samples} samples per pixel. Escape returns to the picture");
+    if view.is_hidden() {
+        let [[title, _], _] = snapshot.model.side_names();
+        let kept = view.kept_partner().filter(|kept| kept.document.is_some()).map(|kept| kept.samples());
+        let samples = kept.or(snapshot.other.as_ref().map(|other| other.samples_per_pixel));
+        let samples =
+            samples.map_or_else(String::new, |count| format!(", {} samples per pixel", grouped(count)));
+        return format!("{title}{samples}. Escape returns to the picture");
     }
     if let Some(checked) = &snapshot.checked {
         return checked.clone();

@@ -1,6 +1,6 @@
 //! The menus, read from the table of commands.
 
-use super::widgets::tip;
+use super::widgets::{named, tip};
 use crate::app::commands::{Command, MENUS, PanelContext, ROWS};
 use eframe::egui::accesskit::Toggled;
 use eframe::egui::containers::menu::SubMenuButton;
@@ -12,7 +12,8 @@ pub const MENU_WIDTH: f32 = 248.0;
 /// All menus of the bar.
 pub fn menus(ui: &mut Ui, cx: &PanelContext) {
     for menu in MENUS {
-        ui.menu_button(menu, |ui| entries(ui, menu, cx));
+        let response = ui.menu_button(menu, |ui| entries(ui, menu, cx)).response;
+        named(&response, menu);
     }
 }
 

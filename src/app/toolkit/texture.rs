@@ -21,6 +21,11 @@ impl Texture {
         Texture { image, handle }
     }
 
+    /// Pixels across and down.
+    pub fn size(&self) -> [u32; 2] {
+        self.image.size.map(|side| side as u32)
+    }
+
     /// The colour of a pixel, column and row from the upper left.
     pub fn colour(&self, [x, y]: [u32; 2]) -> Option<[u8; 3]> {
         let [width, height] = self.image.size;

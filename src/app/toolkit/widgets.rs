@@ -245,6 +245,8 @@ pub fn switch<T: PartialEq + Copy>(
 /// A list that opens under its name's row; `entries` are drawn with [`entry`].
 pub fn list(ui: &mut Ui, about: About<'_>, shown: &str, entries: impl FnOnce(&mut Ui)) -> Response {
     row(ui, about, |ui| {
+        // Long words are cut, and not the name.
+        ui.set_max_width(ui.spacing().combo_width);
         let combo = ComboBox::from_id_salt(about.name).width(ui.spacing().combo_width).truncate();
         let response = combo.selected_text(shown).show_ui(ui, entries).response;
         named(&response, about.name);
@@ -272,6 +274,7 @@ pub fn check(ui: &mut Ui, about: About<'_>, value: &mut bool) -> Response {
 pub struct Number<'a> {
     about: About<'a>,
     limits: RangeInclusive<f64>,
+    prefix: &'a str,
     suffix: &'a str,
     speed: Option<f64>,
     /// The largest of the numbers that it belongs to: beside that, rounding noise is 0.
@@ -281,7 +284,12 @@ pub struct Number<'a> {
 
 impl<'a> Number<'a> {
     pub fn new(about: About<'a>, limits: RangeInclusive<f64>) -> Self {
-        Number { about, limits, suffix: "", speed: None, scale: 0.0, is_whole: false }
+        Number { about, limits, prefix: "", suffix: "", speed: None, scale: 0.0, is_whole: false }
+    }
+
+    /// The letter before the number.
+    fn letter(self, prefix: &'a str) -> Self {
+        Number { prefix, ..self }
     }
 
     /// The unit after the number.
@@ -315,6 +323,7 @@ impl<'a> Number<'a> {
             .update_while_editing(false)
             .custom_formatter(|n, _| self.text(n))
             .custom_parser(parse)
+            .prefix(self.prefix)
             .suffix(self.suffix)
             .clip_text(true);
         let added = ui.add_enabled_ui(self.about.disabled_reason.is_none(), |ui| {
@@ -393,7 +402,7 @@ impl<'a> Number<'a> {
 pub fn vector(ui: &mut Ui, about: About<'_>, value: &mut DVec3, limits: RangeInclusive<f64>, speed: f64) {
     ui.scope(|ui| {
         above(ui, about);
-        fields(ui, about, ["x", "y", "z"], value, (limits, speed));
+        fields(ui, about, [["x ", "x"], ["y ", "y"], ["z ", "z"]], value, (limits, speed));
     });
 }
 
@@ -401,17 +410,17 @@ pub fn vector(ui: &mut Ui, about: About<'_>, value: &mut DVec3, limits: RangeInc
 fn fields(
     ui: &mut Ui,
     about: About<'_>,
-    names: [&str; 3],
+    names: [[&str; 2]; 3],
     value: &mut DVec3,
     (limits, speed): (RangeInclusive<f64>, f64),
 ) {
     ui.horizontal(|ui| {
         let width = ((ui.available_width() - 16.0) / 3.0).floor();
         let scale = value.abs().max_element();
-        for (component, name) in names.into_iter().enumerate() {
+        for (component, [letter, name]) in names.into_iter().enumerate() {
             let name = format!("{}, {name}", about.name);
             let about = About { name: &name, ..about };
-            let number = Number { scale, ..Number::new(about, limits.clone()).speed(speed) };
+            let number = Number { scale, ..Number::new(about, limits.clone()).speed(speed).letter(letter) };
             number.field(ui, width, &mut value[component]);
         }
     });
@@ -431,7 +440,7 @@ pub fn colour(ui: &mut Ui, about: About<'_>, albedo: &mut DVec3) {
             albedo[component] = (light * 1e4).round() / 1e4;
         }
     });
-    fields(ui, about, ["red", "green", "blue"], albedo, (0.0..=1.0, 0.005));
+    fields(ui, about, [["R ", "red"], ["G ", "green"], ["B ", "blue"]], albedo, (0.0..=1.0, 0.005));
 }
 
 /// Formats a number in few characters.
@@ -517,6 +526,7 @@ pub fn fold(ui: &mut Ui, header: Header<'_>, is_open: bool, body: impl FnOnce(&m
         ui.spacing_mut().item_spacing.y = SPACING;
         state.show_body_unindented(ui, |ui| {
             body(ui);
+            ui.add_space(4.0);
         });
         is_reset
     })

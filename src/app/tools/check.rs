@@ -2,11 +2,11 @@
 
 use super::inspector;
 use crate::app::commands::{Command, PanelContext};
-use crate::app::model::{Remembered, Tab};
+use crate::app::model::{Mode, Remembered, Tab};
 use crate::app::panels::right::scrolling;
 use crate::app::panels::stage_panel::paragraph;
 use crate::app::toolkit::widgets::{
-    About, Header, entry, fold, hint, list, panel_line, primary, small, switch, tip,
+    About, Header, command_button, entry, fold, hint, list, panel_line, primary, small, switch, tip,
 };
 use crate::app::toolkit::{Answers, Texture, caught, overlay, theme};
 use crate::numbers::heat::HeatScale;
@@ -46,16 +46,6 @@ impl Checked {
     }
 }
 
-/// The picture in the middle of the window.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-enum Side {
-    Yours,
-    #[default]
-    Wipe,
-    Ours,
-    Difference,
-}
-
 /// The check of a picture, which a background thread repeats whenever the file has changed.
 #[derive(Default)]
 pub struct Check {
@@ -68,7 +58,8 @@ pub struct Check {
     has_news: bool,
     /// The picture of the last window was looked for.
     has_resumed: bool,
-    side: Side,
+    /// How the two pictures are shown; ours alone without a mode.
+    mode: Option<Mode>,
     divider: f32,
     /// The number of the place that is shown enlarged.
     place: Option<usize>,
@@ -100,7 +91,7 @@ impl Check {
         // Without a thread, the answer is dropped, which gives an error.
         let _ = Builder::new().name("check".to_owned()).spawn(watch);
         (self.path, self.chosen, self.has_news) = (Some(path.to_owned()), stage, true);
-        (self.side, self.divider, self.place, self.hovered) = (Side::Wipe, 0.5, None, None);
+        (self.mode, self.divider, self.place, self.hovered) = (Some(Mode::Wipe), 0.5, None, None);
     }
 
     /// Takes answers, and opens their tab when they are about another picture. Resumes the check of the last window.
@@ -136,6 +127,12 @@ impl Check {
     pub fn words(&self) -> Option<String> {
         let ([width, height], _) = self.shown.as_ref()?.compared.as_ref()?;
         Some(format!("Checked {}, {width} × {height} pixels", self.name()))
+    }
+
+    /// The stage and the size of the checked picture, if the check knows them.
+    pub fn found(&self) -> Option<(&'static Stage, [u32; 2])> {
+        let Checked { answer, compared, .. } = self.shown.as_ref()?;
+        Some((answer.stage?, compared.as_ref()?.0))
     }
 
     /// Whether an answer is shown or awaited.
@@ -179,7 +176,7 @@ impl Check {
                     cx.send(Command::CheckPicture);
                 }
             });
-            numbers(ui, self.hovered, compared.as_ref(), self.is_over_yours, self.side);
+            numbers(ui, self.hovered, compared.as_ref(), self.is_over_yours, self.mode);
         });
         scrolling(ui, |ui| {
             verdict(ui, answer);
@@ -202,12 +199,15 @@ impl Check {
                 ui.add_space(4.0);
                 small(ui, "Compare");
                 let sides = [
-                    (Side::Yours, About::new("Yours", "Your picture")),
-                    (Side::Wipe, About::new("Wipe", "Drag a divider between the two")),
-                    (Side::Ours, About::new("Ours", "The same stage by Weekender")),
-                    (Side::Difference, About::new("Difference", "Where the two differ, and by how much")),
+                    (Some(Mode::Flip), About::new("Yours", "Your picture")),
+                    (Some(Mode::Wipe), About::new("Wipe", "Drag a divider between the two")),
+                    (None, About::new("Ours", "The same stage by Weekender")),
+                    (
+                        Some(Mode::Difference),
+                        About::new("Difference", "Where the two differ, and by how much"),
+                    ),
                 ];
-                self.side = switch(ui, 0.0, self.side, &sides).unwrap_or(self.side);
+                self.mode = switch(ui, 0.0, self.mode, &sides).unwrap_or(self.mode);
                 let next = self.place.map_or(0, |place| (place + 1) % answer.places.len().max(1));
                 let words = if self.place.is_none() { "Show where" } else { "Next place" };
                 ui.horizontal(|ui| {
@@ -217,6 +217,7 @@ impl Check {
                     if self.place.is_some() && ui.button("Whole picture").clicked() {
                         (self.place, self.divider) = (None, 0.5);
                     }
+                    command_button(ui, cx, Command::CompareMine, "With paths and zoom");
                 });
                 if answer.evidence.is_empty() {
                     return;
@@ -256,10 +257,10 @@ impl Check {
         let painter = ui.painter().with_clip_rect(room);
         painter.rect_filled(room, 0, theme::colours(ui).surround);
         let options = if scale < 4.0 { TextureOptions::LINEAR } else { TextureOptions::NEAREST };
-        let whole = match self.side {
-            Side::Yours => yours,
-            Side::Wipe | Side::Ours => ours,
-            Side::Difference => difference,
+        let whole = match self.mode {
+            Some(Mode::Flip) => yours,
+            Some(Mode::Wipe) | None => ours,
+            Some(Mode::Difference) => difference,
         };
         painter.image(whole.id(ui.ctx(), options), rect, overlay::WHOLE, Color32::WHITE);
         let seen = rect.intersect(room);
@@ -268,17 +269,17 @@ impl Check {
             Some(stage) => format!("Ours: {} {}", stage.section, stage.title),
             None => "Ours".to_owned(),
         };
-        match self.side {
-            Side::Wipe => {
+        match self.mode {
+            Some(Mode::Wipe) => {
                 if let Some(pointer) = response.interact_pointer_pos() {
                     self.divider = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
                 }
                 let left = (yours.id(ui.ctx(), options), rect);
                 overlay::wipe(ui, &painter, rect, self.divider, left, [&your_title, &our_title]);
             }
-            Side::Yours => overlay::title(ui, &painter, seen, Align2::LEFT_TOP, &your_title),
-            Side::Ours => overlay::title(ui, &painter, seen, Align2::RIGHT_TOP, &our_title),
-            Side::Difference => {
+            Some(Mode::Flip) => overlay::title(ui, &painter, seen, Align2::LEFT_TOP, &your_title),
+            None => overlay::title(ui, &painter, seen, Align2::RIGHT_TOP, &our_title),
+            Some(Mode::Difference) => {
                 let words = format!("Difference: {}", self.name());
                 overlay::title(ui, &painter, seen, Align2::LEFT_TOP, &words);
                 overlay::legend(ui, &painter, seen, &HeatScale::DISPLAYED);
@@ -295,8 +296,8 @@ impl Check {
             let place = (at - rect.min) / rect.size();
             let pixel = |share: f32, side: u32| ((share * side as f32) as u32).min(side - 1);
             self.hovered = Some([pixel(place.x, pixels[0]), pixel(place.y, pixels[1])]);
-            let is_left = self.side == Side::Wipe && place.x < self.divider;
-            self.is_over_yours = is_left || self.side == Side::Yours;
+            let is_left = self.mode == Some(Mode::Wipe) && place.x < self.divider;
+            self.is_over_yours = is_left || self.mode == Some(Mode::Flip);
         }
         Some(room)
     }
@@ -308,7 +309,7 @@ fn numbers(
     at: Option<[u32; 2]>,
     pictures: Option<&([u32; 2], [Texture; 3])>,
     is_yours: bool,
-    side: Side,
+    mode: Option<Mode>,
 ) {
     let Some((_, [yours, ours, _])) = pictures else { return };
     let found = at.and_then(|at| Some((at, yours.colour(at)?, ours.colour(at)?)));
@@ -316,7 +317,7 @@ fn numbers(
         let Some((at, yours, ours)) = found else { return };
         inspector::header(ui, at, None);
         let change = [0, 1, 2].map(|i| format!("{:+}", i32::from(ours[i]) - i32::from(yours[i])));
-        let is_difference = side == Side::Difference;
+        let is_difference = mode == Some(Mode::Difference);
         let words = |bytes: [u8; 3]| bytes.map(|byte| byte.to_string());
         inspector::table(
             ui,
@@ -499,11 +500,11 @@ mod tests {
             "the first picture is the reader's"
         );
         // The side, the place and the tab stay where they are.
-        (check.side, check.place, remembered.tab) = (Side::Yours, Some(0), Tab::Code);
+        (check.mode, check.place, remembered.tab) = (Some(Mode::Flip), Some(0), Tab::Code);
         old_file(&path, &tiny(200));
         answered(&mut check, &mut remembered);
         assert_ne!(check.shown.as_ref().unwrap().answer.kind, AnswerKind::Right);
-        assert!(check.side == Side::Yours && check.place == Some(0) && remembered.tab == Tab::Code);
+        assert!(check.mode == Some(Mode::Flip) && check.place == Some(0) && remembered.tab == Tab::Code);
         let mut next = Check::default();
         next.follow(&context, &mut remembered);
         assert!(next.is_open() && remembered.tab == Tab::Code);

@@ -2,14 +2,11 @@
 
 use super::Tools;
 use crate::app::commands::{Command, PanelContext};
-use crate::app::model::{Dock, Model, ViewState};
-use crate::app::panels::plot;
+use crate::app::model::{Dock, Model, Partner, ViewState};
+use crate::app::panels::{compare, plot};
 use crate::app::toolkit::menu::item;
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{
-    TABS, choice, command_button, command_switch, hint, panel_line, sign_button, small, tip,
-};
-use crate::app::tracing::kept::KeptActions;
+use crate::app::toolkit::widgets::{TABS, choice, command_button, hint, panel_line, sign_button, small, tip};
 use crate::system::memory::words;
 use eframe::egui::{
     self, Align, Atom, Frame, Image, Label, Layout, Margin, RichText, Role, ScrollArea, Sides, Ui, Vec2,
@@ -26,7 +23,7 @@ const PICTURE: Vec2 = vec2(132.0, 74.0);
 const CARD: f32 = 102.0;
 
 /// Draws the dock.
-pub fn ui(ui: &mut Ui, model: &mut Model, tools: &mut Tools, kept: &mut KeptActions, cx: &PanelContext) {
+pub fn ui(ui: &mut Ui, model: &mut Model, tools: &mut Tools, cx: &PanelContext) {
     let Some(dock) = model.remembered.dock else { return };
     let height = ui.ctx().content_rect().height();
     let usual = if height < 700.0 { LOW } else { HEIGHT };
@@ -44,7 +41,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, tools: &mut Tools, kept: &mut KeptActi
                 ui.spacing_mut().item_spacing.y = 8.0;
                 match dock {
                     Dock::Path => tools.paths.ui(ui),
-                    Dock::Kept => kept_ui(ui, model, kept, cx),
+                    Dock::Kept => kept_ui(ui, model, cx),
                     Dock::Lanes => tools.lanes.ui(ui, cx),
                     Dock::Error => plot::ui(ui, cx),
                 }
@@ -81,34 +78,30 @@ fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, cx: &PanelContext) {
     Sides::new().height(TABS).shrink_left().show(ui, left, right);
 }
 
-/// How the chosen kept picture is compared.
-const COMPARISONS: [(&str, Command); 3] =
-    [("Look", Command::Flip), ("Wipe", Command::KeptWipe), ("Difference", Command::KeptDifference)];
-
 /// Its context menu.
 const MENU: [Command; 6] = [
     Command::Flip,
-    Command::KeptWipe,
-    Command::KeptDifference,
+    Command::Wipe,
+    Command::Difference,
     Command::OnlyNoise,
     Command::GoOnFromKept,
     Command::DeleteKept,
 ];
 
-fn kept_ui(ui: &mut Ui, model: &mut Model, kept: &mut KeptActions, cx: &PanelContext) {
+fn kept_ui(ui: &mut Ui, model: &mut Model, cx: &PanelContext) {
     let list = &model.view.kept;
-    let Some(chosen) = list.meant() else {
+    if list.get(0).is_none() {
         hint(ui, "Nothing is kept yet. M keeps the picture as it is now, to compare with later.");
         return;
-    };
+    }
     ui.horizontal_wrapped(|ui| {
-        command_switch(ui, cx, 0.0, &COMPARISONS);
-        command_button(ui, cx, Command::OnlyNoise, "Only noise?");
         command_button(ui, cx, Command::Keep, "Keep");
-        if !kept.verdict.ui(ui, chosen.number, cx.status.run) {
-            let memory = words(list.bytes());
-            small(ui, format!("Kept pictures take {memory}. They are gone when the window closes."));
+        command_button(ui, cx, Command::CompareFile, "File…");
+        if model.view.kept_partner().is_some() {
+            compare::tools(ui, cx);
         }
+        let memory = words(list.bytes());
+        small(ui, format!("Kept pictures take {memory}. They are gone when the window closes."));
     });
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
@@ -122,7 +115,8 @@ fn kept_ui(ui: &mut Ui, model: &mut Model, kept: &mut KeptActions, cx: &PanelCon
 
 fn card(ui: &mut Ui, place: usize, view: &mut ViewState, cx: &PanelContext) {
     let Some(kept) = view.kept.get(place).cloned() else { return };
-    let (is_chosen, title) = (view.kept.chosen() == Some(place), view.kept.title(&kept));
+    let partner = Partner::Kept(kept.number);
+    let (is_chosen, title) = (view.partner == partner, view.kept.title(&kept));
     let layout = Layout::top_down(Align::Min);
     let added = ui.allocate_ui_with_layout(vec2(PICTURE.x + 16.0, CARD), layout, |ui| {
         ui.spacing_mut().item_spacing.y = 4.0;
@@ -134,14 +128,18 @@ fn card(ui: &mut Ui, place: usize, view: &mut ViewState, cx: &PanelContext) {
         response
     });
     let response = added.inner;
+    let chosen = ui.scope_id().with("chosen");
+    if is_chosen && ui.data(|data| data.get_temp(chosen)) != Some(kept.number) {
+        ui.data_mut(|data| data.insert_temp(chosen, kept.number));
+        added.response.scroll_to_me(None);
+    }
     if response.double_clicked() {
         view.look(place);
     } else if response.clicked() || response.secondary_clicked() {
-        view.kept.choose(place);
+        view.partner = partner;
     }
     response.context_menu(|ui| MENU.iter().for_each(|command| _ = item(ui, cx, *command)));
     let ([width, height], samples, memory) = (kept.size(), kept.samples(), words(kept.bytes()));
-    let title = kept.document.title();
-    let help = format!("{title}, {samples} samples per pixel, {width} × {height}, {memory}");
+    let help = format!("{}, {samples} samples per pixel, {width} × {height}, {memory}", kept.name);
     tip(ui, response, &help, None);
 }

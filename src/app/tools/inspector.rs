@@ -4,7 +4,7 @@
 use crate::app::model::{Document, Mode, ViewState, kind_word};
 use crate::app::toolkit::widgets::{compact, hint, tip};
 use crate::app::toolkit::{Query, theme};
-use crate::app::tracing::second::OtherFilm;
+use crate::app::tracing::second::{Other, OtherId};
 use crate::app::tracing::subject::{PictureId, Subject};
 use crate::backends::layers::Layer;
 use crate::film::{Film, to_byte};
@@ -60,9 +60,6 @@ pub struct Readout {
 /// Column and row.
 type At = [u32; 2];
 
-/// See [`OtherFilm::id`].
-type OtherId = (u64, u64);
-
 /// The pixel under the pointer and what is known about it.
 #[derive(Default)]
 pub struct Inspector {
@@ -99,7 +96,7 @@ impl Inspector {
     pub fn follow(
         &mut self,
         subject: &Subject<'_>,
-        other: Option<OtherFilm<'_>>,
+        other: Option<Other<'_>>,
         view: &ViewState,
         context: &egui::Context,
     ) {
@@ -112,7 +109,7 @@ impl Inspector {
         if let Some(other) = other
             && let Some(answer) = self.theirs.ask(context, (at, other.id()))
         {
-            let transfer = other.document().rules().transfer;
+            let transfer = other.transfer();
             other.inspect(move |film| {
                 let there = at_other(at, size, [film.width(), film.height()]);
                 answer.give(Ok((at, there.and_then(|there| Pixel::of(film, there, transfer)))));
@@ -128,13 +125,13 @@ impl Inspector {
     /// Joins the answers about one place.
     fn join(&mut self, has_other: bool, view: &ViewState) {
         let (mine, theirs) = (self.mine.answer.as_ref(), self.theirs.answer.as_ref());
-        let is_other = self.is_over_other || view.looked().is_some();
+        let is_hidden = view.is_hidden();
         let found = match (has_other, mine, theirs) {
             (false, Some((_, pixel)), _) => Some((Some(pixel), false, None)),
-            (true, _, Some((_, pixel))) if view.looked().is_some() => Some((pixel.as_ref(), true, None)),
+            (true, _, Some((_, pixel))) if is_hidden => Some((pixel.as_ref(), true, None)),
             (true, Some((at, mine)), Some((there, theirs))) if at == there => {
                 let compared = theirs.clone().map(|theirs| [theirs, mine.clone()]);
-                let is_other = is_other && view.mode() == Some(Mode::Wipe);
+                let is_other = self.is_over_other && view.mode() == Some(Mode::Wipe);
                 Some((if is_other { theirs.as_ref() } else { Some(mine) }, is_other, compared))
             }
             _ => None,
@@ -149,7 +146,7 @@ impl Inspector {
         &self,
         ui: &mut Ui,
         names: [&str; 2],
-        documents: [&Document; 2],
+        documents: [Option<&Document>; 2],
         mode: Option<Mode>,
         layer: Option<(Layer, [f64; 3])>,
     ) {
@@ -157,7 +154,7 @@ impl Inspector {
             let Some(readout) = &self.readout else { return };
             let document = documents[usize::from(!readout.is_other)];
             let name = readout.compared.as_ref().map(|_| names[usize::from(!readout.is_other)]);
-            header(ui, readout.pixel.at, surface(document, readout.pixel.at));
+            header(ui, readout.pixel.at, document.and_then(|document| surface(document, readout.pixel.at)));
             table(ui, &rows(readout, names, name.unwrap_or_default(), mode, layer));
         });
     }

@@ -29,7 +29,7 @@ pub struct Tools {
 impl Tools {
     /// Asks background threads for what is to be explained.
     pub fn follow(&mut self, context: &Context, model: &Model, subject: &Subject<'_>, is_moving: bool) {
-        self.inspector.follow(subject, subject.tracing.second.film(&model.view), &model.view, context);
+        self.inspector.follow(subject, subject.tracing.other(model), &model.view, context);
         self.paths.follow(&model.document, context);
         let is_open = model.has_panels() && model.remembered.dock == Some(Dock::Lanes);
         let count = is_open.then(|| model.remembered.lanes_in_use());

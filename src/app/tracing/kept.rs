@@ -1,106 +1,158 @@
-//! Keeping pictures, and the question whether a kept one and the traced one differ only by noise: the statistics of
-//! `weekender compare`, on a thread. The list of kept pictures is in the model.
+//! Keeping pictures, and the question whether two pictures differ only by noise: the statistics of `weekender compare`, on
+//! a thread. The list of kept pictures is in the model.
 
 use super::Tracing;
+use super::second::{Other, OtherId};
 use super::tracer::Tracer;
-use crate::app::model::{Document, Kept};
-use crate::app::toolkit::{Answers, Query, theme};
+use crate::app::commands::Verdict;
+use crate::app::model::{Kept, Model};
+use crate::app::toolkit::{Answers, Query};
 use crate::film::Film;
 use crate::job::recipe::Recipe;
 use crate::pictures::{Picture, compare};
-use eframe::egui::{Context, RichText, Ui};
+use eframe::egui::Context;
+use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::mpsc::channel;
+
+/// The other picture, and the run and the samples of this one.
+type Sides = (OtherId, u64, u64);
 
 #[derive(Default)]
 pub struct KeptActions {
-    pub verdict: Verdict,
+    pub verdict: Query<Sides, Verdict>,
     pub copied: Answers<Kept>,
+    /// Pictures of files, to compare with.
+    pub files: Answers<Kept>,
     /// The picture is to be kept as soon as it has samples.
     pub is_wanted: bool,
+    /// The two pictures are to be compared as soon as both have samples.
+    pub is_asked: bool,
 }
 
 impl KeptActions {
-    /// Copies the traced film if that was asked for and it has samples. The answer arrives in `copied`.
-    pub fn follow(&mut self, context: &Context, document: &Document, tracing: &Tracing) {
-        if !self.is_wanted || !tracing.main.has_samples(document) {
+    /// Copies the traced film if that was asked for and it has samples. The answer arrives in `copied`. Compares two films
+    /// of the same samples once both are done.
+    pub fn follow(&mut self, context: &Context, model: &Model, tracing: &Tracing) {
+        self.verdict.follow();
+        let document = &model.document;
+        if !tracing.main.has_samples(document) {
             return;
         }
-        self.is_wanted = false;
-        let (document, answer) = (document.clone(), self.copied.promise(context));
-        let (seconds, context) = (tracing.seconds(), context.clone());
-        tracing.main.inspect(move |film| {
-            let copy = film.try_copy().map_err(|error| error.to_string());
-            answer.give_from("keep", move || copy.map(|film| Kept::new(&context, document, film, seconds)));
+        if let Some(other) = tracing.other(model).filter(Other::is_ready) {
+            let is_over = |tracer: &Tracer| tracer.status().phase.is_over();
+            let samples = |tracer: &Tracer| tracer.status().samples_per_pixel;
+            let is_due = matches!(other, Other::Traced(partner, tracer, _)
+                if partner.has_same_samples()
+                    && is_over(tracer)
+                    && is_over(&tracing.main)
+                    && (samples(tracer) == samples(&tracing.main) || document.stop.seconds.is_some()));
+            let sides = sides(&other, tracing);
+            if std::mem::take(&mut self.is_asked) || is_due && self.verdict.asked != Some(sides) {
+                self.ask(context, model, tracing, sides);
+            }
+        }
+        if std::mem::take(&mut self.is_wanted) {
+            let (document, answer) = (document.clone(), self.copied.promise(context));
+            let (seconds, context) = (tracing.seconds(), context.clone());
+            tracing.main.inspect(move |film| {
+                let copy = film.try_copy().map_err(|error| error.to_string());
+                answer
+                    .give_from("keep", move || copy.map(|film| Kept::new(&context, document, film, seconds)));
+            });
+        }
+    }
+
+    /// Reads the picture of a file, to compare with.
+    pub fn read(&mut self, context: &Context, model: &Model, path: PathBuf) {
+        let (transfer, own) = (model.document.rules().transfer, context.clone());
+        self.files.ask("compare", context, move || Kept::read(&own, &path, transfer));
+    }
+
+    /// Compares the other picture with the traced one. An earlier question is forgotten.
+    fn ask(&mut self, context: &Context, model: &Model, tracing: &Tracing, sides: Sides) {
+        self.verdict = Query::default();
+        let Some(other) = tracing.other(model) else { return };
+        let Some(answer) = self.verdict.ask(context, sides) else { return };
+        let (sender, other_film) = channel();
+        let (theirs, is_rounded) = (other.document().map(|document| document.recipe()), other.id().0);
+        let of_file = match other {
+            Other::Kept(kept) => kept.picture.clone(),
+            Other::Traced(..) => None,
+        };
+        other.inspect(move |film| _ = sender.send(film.try_copy()));
+        let mine = model.document.recipe();
+        tracing.main.inspect(move |film| match film.try_copy() {
+            Ok(film) => answer.give_from("compare", move || {
+                let other_film = other_film.recv().map_err(|_| "it has no picture yet".to_owned())?;
+                let other_film = other_film.map_err(|error| error.to_string())?;
+                let theirs = of_file.map_or_else(|| picture("other", theirs, other_film), Ok)?;
+                compared(&[theirs, picture("traced", Some(mine), film)?], is_rounded.has_same_samples())
+            }),
+            Err(error) => answer.give(Err(error.to_string())),
         });
     }
+
+    /// The verdict on the difference of the two pictures, or that it is awaited.
+    pub fn verdict(&self, model: &Model, tracing: &Tracing) -> Option<Verdict> {
+        let (id, run, _) = sides(&tracing.other(model)?, tracing);
+        let (asked, of_run, _) = self.verdict.asked?;
+        if (asked.0, asked.1, of_run) != (id.0, id.1, run) {
+            return None;
+        }
+        let said = |headline, words: &str| Verdict { is_equal: None, headline, words: words.to_owned() };
+        Some(match &self.verdict {
+            Query { fault: Some(reason), .. } => said("Not compared:", reason),
+            Query { answer: Some(verdict), .. } => verdict.clone(),
+            _ => said("Comparing\u{2026}", ""),
+        })
+    }
+}
+
+fn sides(other: &Other<'_>, tracing: &Tracing) -> Sides {
+    let status = tracing.main.status();
+    (other.id(), status.run, status.samples_per_pixel)
 }
 
 /// Deviations of noise that hardly any block exceeds.
 const CLEAR: f64 = 4.0;
 
-/// The answer in two sentences.
-pub struct Answer {
-    is_equal: bool,
-    pub headline: &'static str,
-    pub words: String,
+/// Pictures of the same samples differ by less than this share of their noise.
+const ROUNDING: f64 = 0.3;
+
+fn picture(name: &str, recipe: Option<Recipe>, film: Film) -> Result<Picture, String> {
+    Picture::of_rendered(name.to_owned(), recipe.as_ref(), Arc::new(film)).map_err(|error| error.to_string())
 }
 
-/// The answer about a kept picture and a run of the render, or that it is awaited.
-#[derive(Default)]
-pub struct Verdict(pub Query<(u64, u64), Answer>);
-
-impl Verdict {
-    /// Compares a kept picture with the one that `main` traces for `live`. An earlier question is forgotten.
-    pub fn ask(&mut self, context: &Context, kept: &Arc<Kept>, (live, main): (&Document, &Tracer)) {
-        *self = Verdict::default();
-        let Some(answer) = self.0.ask(context, (kept.number, main.status().run)) else { return };
-        let (kept, recipe) = (Arc::clone(kept), live.recipe());
-        main.inspect(move |film| match film.try_copy() {
-            Ok(film) => answer.give_from("compare", move || compared(&kept, recipe, film)),
-            Err(error) => answer.give(Err(error.to_string())),
-        });
-    }
-
-    /// Draws the answer, if it is about this kept picture and this run. Returns whether it is.
-    pub fn ui(&self, ui: &mut Ui, kept: u64, run: u64) -> bool {
-        if self.0.asked != Some((kept, run)) {
-            return false;
-        }
-        let colours = theme::colours(ui);
-        let (color, headline, words) = match &self.0 {
-            Query { fault: Some(reason), .. } => (colours.bad, "Not compared:", reason.as_str()),
-            Query { answer: Some(Answer { is_equal, headline, words }), .. } => {
-                let color = if *is_equal { colours.good } else { colours.warn };
-                (color, *headline, words.as_str())
-            }
-            _ => (colours.weak, "Comparing\u{2026}", ""),
-        };
-        ui.label(RichText::new(headline).small().color(color));
-        ui.label(RichText::new(words).small());
-        true
-    }
-}
-
-fn compared(kept: &Kept, recipe: Recipe, film: Film) -> Result<Answer, String> {
-    let picture = |name: &str, recipe: Recipe, film| {
-        Picture::of_rendered(name.to_owned(), Some(&recipe), film).map_err(|error| error.to_string())
-    };
-    let sides = [
-        picture("kept", kept.document.recipe(), Arc::clone(&kept.film))?,
-        picture("traced", recipe, Arc::new(film))?,
-    ];
-    let comparison = compare::compare_sides(&sides).map_err(|error| error.to_string())?;
+fn compared(sides: &[Picture; 2], has_same_samples: bool) -> Result<Verdict, String> {
+    let comparison = compare::compare_sides(sides).map_err(|error| error.to_string())?;
     let is_equal = comparison.is_equal();
+    let share_of_noise = comparison.times_noise();
     let (headline, words) = match &comparison.unclear {
-        _ if is_equal && comparison.is_same => ("Identical to the bit.", String::new()),
+        _ if is_equal && comparison.is_same => ("Equal to the bit.", String::new()),
+        _ if is_equal && has_same_samples && share_of_noise < ROUNDING => {
+            let pixels = sides[0].pixels.iter().zip(&sides[1].pixels);
+            let differing = pixels.filter(|(a, b)| a != b).count();
+            let share = 100.0 * differing as f64 / sides[0].pixels.len().max(1) as f64;
+            let noise = 100.0 * share_of_noise;
+            ("Only rounding.", format!("{share:.1} % of the pixels differ, by {noise:.1} % of the noise."))
+        }
         _ if is_equal => ("Only noise.", "Nothing differs by more than chance.".to_owned()),
         Some(_) => ("Too early to tell.", "Both need more samples.".to_owned()),
         None => {
             let blocks = &comparison.test.blocks;
             let clear = blocks.iter().filter(|block| block.largest() > CLEAR).count();
             let share = (100 * clear).div_ceil(blocks.len().max(1));
-            ("More than noise.", format!("{share} % of the blocks differ clearly."))
+            let worst = blocks.iter().max_by(|a, b| a.largest().total_cmp(&b.largest()));
+            let place = worst.map_or_else(String::new, |block| {
+                format!(", most around column {}, row {}", middle(&block.x), middle(&block.y))
+            });
+            ("More than noise.", format!("{share} % of the blocks differ clearly{place}."))
         }
     };
-    Ok(Answer { is_equal, headline, words })
+    Ok(Verdict { is_equal: Some(is_equal), headline, words })
+}
+
+fn middle(range: &std::ops::Range<u32>) -> u32 {
+    u32::midpoint(range.start, range.end)
 }

@@ -8,12 +8,13 @@ pub mod subject;
 pub mod tracer;
 
 use crate::app::model::changes::Changes;
-use crate::app::model::{Device, Document, Model, Sizing};
+use crate::app::model::{Device, Document, Model, Partner, Sizing};
 use crate::app::toolkit::Toasts;
 use crate::film::Film;
-use crate::progressive::Status;
+use crate::progressive::{HistoryPoint, Phase, Status, Stop};
 use eframe::egui::Context;
-use second::Second;
+use second::{Other, Second};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tracer::{Tracer, Want};
 
@@ -39,7 +40,19 @@ pub struct Tracing {
     pub invalid: Option<String>,
     /// The run, and how many of its messages and failures have been seen.
     seen: (u64, usize, usize),
+    turn: Option<Turn>,
+    /// The curves of renders of the same picture that were started again, and that picture.
+    earlier: Option<(Document, Vec<HistoryPoint>)>,
 }
+
+/// Two devices trace in turns, so that neither has processors of the other and the speeds of both are true.
+struct Turn {
+    is_second: bool,
+    since: Instant,
+}
+
+/// How long a turn takes.
+const TURN: Duration = Duration::from_millis(500);
 
 impl Tracing {
     /// # Errors
@@ -53,6 +66,8 @@ impl Tracing {
             film: None,
             invalid: None,
             seen: (0, 0, 0),
+            turn: None,
+            earlier: None,
         })
     }
 
@@ -75,10 +90,33 @@ impl Tracing {
         self.tracers().for_each(|tracer| tracer.progressive.resume());
     }
 
-    /// Throws the samples away and begins anew.
-    pub fn restart(&mut self) {
+    /// Throws the samples away and begins anew. The error over time stays, to compare with.
+    pub fn restart(&mut self, document: &Document) {
+        let mut curves = self.earlier(document).to_vec();
+        curves.extend(&self.main.status().history);
+        self.earlier = Some((document.clone(), curves));
         self.seconds_before = Some(0.0);
         self.main.started = None;
+        self.second.tracer.iter_mut().for_each(|tracer| tracer.started = None);
+    }
+
+    /// The errors of earlier renders of the picture.
+    pub fn earlier(&self, document: &Document) -> &[HistoryPoint] {
+        let same = self.earlier.as_ref().filter(|(of, _)| of.has_same_film(document));
+        same.map_or(&[], |(_, curves)| curves)
+    }
+
+    /// The status of the render of the other picture, if it has one of its own.
+    pub fn other_status(&self, model: &Model) -> Option<Arc<Status>> {
+        match self.other(model)? {
+            Other::Traced(partner, tracer, _) if partner != Partner::Raw => Some(Arc::clone(tracer.status())),
+            _ => None,
+        }
+    }
+
+    /// The other picture of a comparison, once it has samples.
+    pub fn other<'a>(&'a self, model: &'a Model) -> Option<Other<'a>> {
+        self.second.other(model, &self.main)
     }
 
     /// Gives the document the size that fits the window, unless its samples are worth more or are needed.
@@ -101,16 +139,54 @@ impl Tracing {
     /// Traces what the model asks for. Returns whether there is a picture to compare with, if one is asked for.
     pub fn follow(&mut self, context: &Context, model: &Model, changes: &Changes) -> bool {
         let Model { document, view, is_paused, .. } = model;
+        let (run, partner) = (self.main.status().run, view.compared(document));
+        let mut stop = view.stop(run, document.stop);
+        if let Some(second) =
+            self.second.tracer.as_ref().filter(|_| partner.is_some_and(Partner::has_same_samples))
+        {
+            stop = common_stop(stop, [self.main.status(), second.status()]);
+        }
         let want = Want {
             document,
             backend: &model.backend(),
-            stop: view.stop(self.main.status().run, document.stop),
-            view: view.of_film(self.main.status().run, self.second.means(view)),
+            stop,
+            view: view.of_film(run, self.second.means(model)),
             is_moving: changes.is_moving(),
             is_paused: *is_paused,
         };
         self.invalid = self.main.want(&want, self.film.take()).err();
-        self.second.follow(context, view, &want)
+        let is_there = self.second.follow(context, model, &want, &self.main);
+        self.take_turns(context, model.other_device().is_some(), *is_paused);
+        is_there
+    }
+
+    fn take_turns(&mut self, context: &Context, is_race: bool, is_paused: bool) {
+        let Some(second) = self.second.tracer.as_ref().filter(|second| is_race && !second.is_coarse()) else {
+            if self.turn.take().is_some() && !is_paused {
+                self.main.progressive.resume();
+            }
+            return;
+        };
+        let tracers = [&self.main, second];
+        let turn = self.turn.get_or_insert_with(|| Turn { is_second: true, since: Instant::now() });
+        let is_over = |tracer: &Tracer| tracer.status().phase.is_over();
+        if turn.since.elapsed() >= TURN || is_over(tracers[usize::from(turn.is_second)]) {
+            *turn = Turn { is_second: !turn.is_second, since: Instant::now() };
+        }
+        if is_paused {
+            return;
+        }
+        for (place, tracer) in tracers.into_iter().enumerate() {
+            let has_turn = turn.is_second == (place == 1) || is_over(tracers[1 - place]);
+            match tracer.status().phase {
+                Phase::Tracing if !has_turn => tracer.progressive.pause(),
+                Phase::Paused if has_turn => tracer.progressive.resume(),
+                _ => {}
+            }
+        }
+        if !tracers.into_iter().all(is_over) {
+            context.request_repaint_after(TURN);
+        }
     }
 
     /// Shows the render's new messages. If the chosen device has failed, chooses the one that has taken over.
@@ -130,6 +206,20 @@ impl Tracing {
         let (next, failures) = device_after(*device, failures, status);
         *device = next;
         self.seen = (status.run, status.messages.len(), failures);
+    }
+}
+
+/// Where two films of the same samples end: the one that reaches its end first sets the number for both.
+fn common_stop(stop: Stop, statuses: [&Arc<Status>; 2]) -> Stop {
+    let is_reached = |status: &Status| {
+        stop.samples.is_some_and(|samples| status.samples_per_pixel >= samples)
+            || stop.noise.zip(status.error).is_some_and(|(goal, error)| error.rmse <= goal)
+    };
+    let ended =
+        statuses.into_iter().filter(|status| matches!(status.phase, Phase::Done(_)) && is_reached(status));
+    match ended.map(|status| status.samples_per_pixel).max() {
+        Some(samples) if stop.seconds.is_none() => Stop::at_samples(samples),
+        _ => stop,
     }
 }
 
@@ -209,7 +299,9 @@ impl Sizer {
 mod tests {
     use super::*;
     use crate::app::model::Origin;
+    use crate::film::ErrorEstimate;
     use crate::job::render::BackendInfo;
+    use crate::progressive::EndReason;
     use crate::stages::Stage;
 
     #[test]
@@ -226,6 +318,29 @@ mod tests {
         assert_eq!(device_after(gpu, 0, &status("cpu", &["gpu"])), (cpu, 1));
         assert_eq!(device_after(gpu, 1, &status("cpu", &["gpu"])), (gpu, 1), "it is tried again");
         assert_eq!(device_after(cpu, 0, &status("cpu", &["cpu"])), (cpu, 0), "its plainer code goes on");
+    }
+
+    #[test]
+    fn the_first_end_counts_for_both_films_of_the_same_samples() {
+        let status = |samples, rmse, is_done| {
+            let phase = if is_done { Phase::Done(EndReason::NoiseTarget) } else { Phase::Tracing };
+            let error = Some(ErrorEstimate { rmse, rmse_deviation: 0.0, rel_mse: 0.0 });
+            Arc::new(Status { samples_per_pixel: samples, phase, error, ..Status::default() })
+        };
+        let goal = |noise| Stop { noise: Some(noise), ..Stop::default() };
+        for (stop, mine, other, expected) in [
+            (goal(0.01), status(64, 0.02, false), status(32, 0.03, false), goal(0.01)),
+            (goal(0.01), status(64, 0.02, false), status(256, 0.01, true), Stop::at_samples(256)),
+            (goal(0.01), status(260, 0.01, true), status(256, 0.01, true), Stop::at_samples(260)),
+            // The next goal.
+            (goal(0.005), status(256, 0.01, true), status(256, 0.01, true), goal(0.005)),
+            (Stop::at_samples(64), status(64, 0.02, true), status(9, 0.1, false), Stop::at_samples(64)),
+        ] {
+            assert_eq!(common_stop(stop, [&mine, &other]), expected);
+        }
+        // In the same time, one device has more samples than another.
+        let timed = Stop { seconds: Some(3.0), ..goal(0.01) };
+        assert_eq!(common_stop(timed, [&status(9, 0.01, true), &status(5, 0.02, false)]), timed);
     }
 
     const YOUNG: Option<f64> = Some(2.0);

@@ -1,213 +1,231 @@
-//! The second picture for the wipe and the difference: another stage, the same picture by the book's own arithmetic, or a
-//! picture that was kept.
+//! The other picture of a comparison: one that is traced beside this one, a kept one, or this one without denoising.
 
-use super::tracer::{Shown, Tracer, Want};
-use crate::app::model::{Document, Kept, Mode, Origin, Other, ViewState, differ_in_camera};
-use crate::app::toolkit::{Answers, Texture};
+use super::tracer::{Tracer, Want};
+use crate::app::model::{CheckedScene, Document, Kept, Mode, Model, Origin, Partner};
+use crate::app::toolkit::{Query, Texture};
 use crate::film::Film;
 use crate::progressive::{ReferenceMeans, View};
+use crate::stages::Transfer;
 use eframe::egui::Context;
 use std::sync::Arc;
+use std::thread;
 
-/// The second picture.
+/// Tells other pictures and their states apart: the partner, its run and its samples per pixel.
+pub type OtherId = (Partner, u64, u64);
+
+/// The other picture, to read its numbers.
+#[derive(Clone, Copy)]
+pub enum Other<'a> {
+    Kept(&'a Arc<Kept>),
+    Traced(Partner, &'a Tracer, &'a Document),
+}
+
+impl<'a> Other<'a> {
+    /// The document that it shows; `None` for the picture of a file.
+    pub fn document(&self) -> Option<&'a Document> {
+        match self {
+            Other::Kept(kept) => kept.document.as_ref(),
+            Other::Traced(.., document) => Some(document),
+        }
+    }
+
+    pub fn transfer(&self) -> Transfer {
+        match self {
+            Other::Kept(kept) => kept.transfer,
+            Other::Traced(.., document) => document.rules().transfer,
+        }
+    }
+
+    pub fn id(&self) -> OtherId {
+        match self {
+            Other::Kept(kept) => (Partner::Kept(kept.number), 0, kept.samples()),
+            Other::Traced(partner, tracer, _) => (*partner, tracer.status().run, tracer.shown_samples()),
+        }
+    }
+
+    /// Whether its film has samples, at full size.
+    pub fn is_ready(&self) -> bool {
+        match self {
+            Other::Kept(_) => true,
+            Other::Traced(_, tracer, document) => tracer.has_samples(document),
+        }
+    }
+
+    /// Runs `look` with the film, on the render thread or another one.
+    pub fn inspect(&self, look: impl FnOnce(&Film) + Send + 'static) {
+        match self {
+            Other::Kept(kept) => {
+                let film = Arc::clone(&kept.film);
+                let _ = thread::Builder::new().name("kept".to_owned()).spawn(move || look(&film));
+            }
+            Other::Traced(_, tracer, _) => tracer.inspect(look),
+        }
+    }
+}
+
+/// The partner that was traced last, the origin and the scene of this picture then, and the origin of the other one.
+type Of = (Partner, Arc<Origin>, Arc<CheckedScene>, Arc<Origin>);
+
+/// A picture that was resolved from the other film, in a view.
+type Resolved = (OtherId, View, Texture);
+
+/// Such a picture before it is a texture: its size, and three bytes per pixel.
+type Bytes = (OtherId, View, [u32; 2], Vec<u8>);
+
+/// The other picture of a comparison.
 #[derive(Default)]
 pub struct Second {
     /// `None` until another picture is traced.
     pub tracer: Option<Tracer>,
-    /// The picture that was traced last.
-    pub of: Option<(Other, Arc<Origin>)>,
-    /// Its film when it was last read.
-    film: Option<Arc<ReferenceMeans>>,
-    films: Answers<Arc<ReferenceMeans>>,
-    /// Kept pictures by number and view, which a thread makes. All stay, so that a flip between two does not flicker.
-    resolved: Vec<(u64, View, Shown)>,
-    /// The kept picture, the view, and three bytes per pixel.
-    resolving: Answers<(Arc<Kept>, View, Vec<u8>)>,
-}
-
-/// The film of the second picture.
-#[derive(Clone, Copy)]
-pub enum OtherFilm<'a> {
-    Kept(&'a Kept),
-    Traced(&'a Tracer, &'a Shown),
-}
-
-impl OtherFilm<'_> {
-    pub fn document(&self) -> &Document {
-        match self {
-            OtherFilm::Kept(kept) => &kept.document,
-            OtherFilm::Traced(_, shown) => &shown.document,
-        }
-    }
-
-    /// Tells films and their states apart.
-    pub fn id(&self) -> (u64, u64) {
-        match self {
-            OtherFilm::Kept(kept) => (kept.number, u64::MAX),
-            OtherFilm::Traced(_, shown) => (shown.run, shown.samples),
-        }
-    }
-
-    /// Runs `look` with the film, on the render thread if there is one.
-    pub fn inspect(&self, look: impl FnOnce(&Film) + Send + 'static) {
-        match self {
-            OtherFilm::Kept(kept) => look(&kept.film),
-            OtherFilm::Traced(tracer, _) => tracer.inspect(look),
-        }
-    }
+    of: Option<Of>,
+    /// Its light, to subtract.
+    means: Query<OtherId, (OtherId, Arc<ReferenceMeans>)>,
+    /// Pictures of films that are not traced for the comparison. All kept ones stay, so that a flip between two does not
+    /// flicker.
+    resolved: Vec<Resolved>,
+    resolving: Query<(OtherId, View), Bytes>,
 }
 
 impl Second {
-    /// The newest second picture.
-    pub fn shown(&self, view: &ViewState) -> Option<&Shown> {
-        match view.compared_kept() {
-            Some(kept) => {
-                let resolved = self.resolved.iter().find(|(number, ..)| *number == kept.number);
-                resolved.map(|(_, _, shown)| shown)
+    /// The other picture, once it has samples; `main` traces this one.
+    pub fn other<'a>(&'a self, model: &'a Model, main: &'a Tracer) -> Option<Other<'a>> {
+        other(self.tracer.as_ref(), self.of.as_ref(), model, main)
+    }
+
+    /// The other picture as it is drawn, and whether it is a preview.
+    pub fn texture(&self, other: &Other<'_>) -> Option<(&Texture, bool)> {
+        match other {
+            Other::Traced(partner, ..) if *partner != Partner::Raw => {
+                let shown = self.tracer.as_ref()?.shown()?;
+                Some((&shown.texture, shown.divisor > 1))
             }
-            None => self.tracer.as_ref().and_then(Tracer::shown),
+            _ => {
+                let (partner, run, _) = other.id();
+                let found = self.resolved.iter().find(|(id, ..)| (id.0, id.1) == (partner, run));
+                found.map(|(.., texture)| (texture, false))
+            }
         }
     }
 
-    /// The second picture, to read its numbers.
-    pub fn film<'a>(&'a self, view: &'a ViewState) -> Option<OtherFilm<'a>> {
-        match view.compared_kept() {
-            Some(kept) => Some(OtherFilm::Kept(kept)),
-            None => self.tracer.as_ref().and_then(|tracer| Some(OtherFilm::Traced(tracer, tracer.shown()?))),
-        }
+    /// The light of the other film, if it is known.
+    pub fn means<'a>(&'a self, model: &'a Model) -> Option<&'a Arc<ReferenceMeans>> {
+        let partner = model.view.compared(&model.document)?;
+        let known = self.means.answer.as_ref().filter(|(id, _)| id.0 == partner).map(|(_, means)| means);
+        model.view.kept_partner().map(|kept| &kept.means).or(known)
     }
 
-    /// The film of the second picture, if it is known.
-    pub fn means<'a>(&'a self, view: &'a ViewState) -> Option<&'a Arc<ReferenceMeans>> {
-        view.compared_kept().map(|kept| &kept.means).or(self.film.as_ref())
+    /// Makes the other picture, if one is needed; `want` is what `main` renders. Returns whether there is one.
+    pub fn follow(&mut self, context: &Context, model: &Model, want: &Want<'_>, main: &Tracer) -> bool {
+        let partner = model.view.compared(want.document);
+        let is_there = self.trace(context, partner, model, want);
+        self.means.follow();
+        self.take_resolved(model);
+        if let Some(other) = other(self.tracer.as_ref(), self.of.as_ref(), model, main) {
+            let (id, view) = (other.id(), model.view.tone.of_picture());
+            let is_kept = matches!(other, Other::Kept(_));
+            let is_traced = !is_kept && id.0 != Partner::Raw;
+            let is_known = |(of, in_view, _): &Resolved| *of == id && in_view.is_same(&view);
+            if model.view.mode() == Some(Mode::Difference)
+                && other.is_ready()
+                && !is_kept
+                && let Some(answer) = self.means.ask(context, id)
+            {
+                other.inspect(move |film| answer.give(Ok((id, Arc::new(ReferenceMeans::of(film))))));
+            }
+            if !is_traced
+                && !self.resolved.iter().any(is_known)
+                && let Some(answer) = self.resolving.ask(context, (id, view.clone()))
+            {
+                let transfer = other.transfer();
+                other.inspect(move |film| {
+                    let rgb8 = view.resolve(film, transfer, None);
+                    answer.give(Ok((id, view, [film.width(), film.height()], rgb8)));
+                });
+            }
+        }
+        is_there
     }
 
-    /// Makes the second picture, if one is needed; `want` is what the main picture renders. Returns whether there is one.
-    pub fn follow(&mut self, context: &Context, view: &ViewState, want: &Want<'_>) -> bool {
-        if let Some(Ok(film)) = self.films.take() {
-            self.film = Some(film);
-        }
-        let other = view.compared(want.document);
-        if other.is_none() || view.mode() != Some(Mode::Difference) {
-            self.film = None;
-        }
-        let Some(other) = other else {
+    /// Traces the partner, if its picture is one to trace. Returns whether there is another picture.
+    fn trace(&mut self, context: &Context, partner: Option<Partner>, model: &Model, want: &Want<'_>) -> bool {
+        let Some((partner, origin)) =
+            partner.and_then(|partner| Some((partner, self.origin_of(partner, want.document)?)))
+        else {
             self.tracer.iter_mut().for_each(Tracer::abandon);
-            self.follow_kept(context, view);
-            return view.compared_kept().is_some();
+            self.of = None;
+            return partner == Some(Partner::Raw) || model.view.kept_partner().is_some();
         };
-        let document = self.document_of(other, want.document);
         if self.tracer.is_none() {
             // Without a thread there is no second picture, but everything else works.
             self.tracer = Tracer::new().ok();
             self.tracer.iter().for_each(|tracer| tracer.wake(context));
         }
         let Some(tracer) = &mut self.tracer else { return false };
-        let is_new = tracer.poll(context).is_some();
-        // Both pictures have the same stop condition, so that they do not differ in their noise.
-        let (stop, tone) = (document.stop, view.tone.of_picture());
-        let outcome = tracer.want(&Want { document: &document, stop, view: tone, ..*want }, None);
-        let is_due = view.mode() == Some(Mode::Difference) && (is_new || self.film.is_none());
-        let has_film = tracer.is_full(&document) && tracer.has_picture(&document);
-        if is_due && has_film && !self.films.is_open() {
-            let answer = self.films.answer(context);
-            tracer.inspect(move |film| answer.give(Ok(Arc::new(ReferenceMeans::of(film)))));
-        }
-        outcome.is_ok()
+        tracer.poll(context);
+        let document = partner.document(&origin, want.document);
+        let own_backend;
+        let backend = match partner {
+            Partner::Device(device) => {
+                own_backend = model.backend_of(device);
+                &own_backend
+            }
+            _ => want.backend,
+        };
+        // Otherwise both pictures have the same stop condition, so that they do not differ in their noise.
+        let stop = if partner.has_same_samples() { want.stop } else { document.stop };
+        let view = model.view.tone.of_picture();
+        tracer.want(&Want { document: &document, backend, stop, view, ..*want }, None).is_ok()
     }
 
-    /// Takes kept pictures that were made, and has the shown one made in another view.
-    fn follow_kept(&mut self, context: &Context, view: &ViewState) {
-        while let Some(Ok((of, in_view, rgb8))) = self.resolving.take() {
-            let place = self.resolved.iter().position(|(number, ..)| *number == of.number);
-            let earlier = place.map(|place| self.resolved.swap_remove(place).2.texture);
-            let texture = Texture::new(of.size(), &rgb8, earlier);
-            let document = of.document.clone();
-            let shown = Shown { texture, samples: of.samples(), divisor: 1, document, run: 0 };
-            self.resolved.push((of.number, in_view, shown));
+    fn origin_of(&mut self, partner: Partner, mine: &Document) -> Option<Arc<Origin>> {
+        let is_known = |(of, origin, scene, _): &&Of| {
+            let is_same = Arc::ptr_eq(origin, &mine.origin) && Arc::ptr_eq(scene, &mine.checked);
+            *of == partner && (is_same || matches!(partner, Partner::Stage(_)))
+        };
+        if let Some((.., origin)) = self.of.as_ref().filter(is_known) {
+            return Some(Arc::clone(origin));
         }
-        self.resolved.retain(|(number, ..)| view.kept.iter().any(|kept| kept.number == *number));
-        let (Some(kept), in_view) = (view.compared_kept(), view.tone.of_picture()) else { return };
-        let is_known = |(number, of, _): &(u64, View, Shown)| *number == kept.number && of.is_same(&in_view);
-        if !self.resolving.is_open() && !self.resolved.iter().any(is_known) {
-            let kept = Arc::clone(kept);
-            self.resolving.ask("kept", context, move || {
-                let rgb8 = in_view.resolve(&kept.film, kept.document.rules().transfer, None);
-                Ok((kept, in_view, rgb8))
-            });
+        let origin = partner.origin(mine)?;
+        if self.of.as_ref().is_some_and(|(of, ..)| *of != partner) {
+            // Its film may be of the same document, but from another device.
+            self.tracer.iter_mut().for_each(Tracer::abandon);
         }
+        let of = (partner, Arc::clone(&mine.origin), Arc::clone(&mine.checked), Arc::clone(&origin));
+        self.of = Some(of);
+        Some(origin)
     }
 
-    fn document_of(&mut self, other: Other, mine: &Document) -> Document {
-        if self.of.as_ref().is_some_and(|(before, _)| *before != other) {
-            // A late answer about the film of before is lost with its slot.
-            (self.of, self.film, self.films) = (None, None, Answers::default());
+    fn take_resolved(&mut self, model: &Model) {
+        if self.resolving.follow()
+            && let Some((id, view, size, rgb8)) = self.resolving.answer.take()
+        {
+            let place = self.resolved.iter().position(|(of, ..)| of.0 == id.0);
+            let earlier = place.map(|place| self.resolved.swap_remove(place).2);
+            self.resolved.push((id, view, Texture::new(size, &rgb8, earlier)));
         }
-        let (_, origin) = self.of.get_or_insert_with(|| {
-            let origin = Arc::new(other.origin());
-            (other, origin)
+        self.resolved.retain(|(id, ..)| match id.0 {
+            Partner::Kept(number) => model.view.kept.find(number).is_some(),
+            _ => true,
         });
-        let (theirs, base) = (&origin.recipe, &mine.origin.recipe);
-        let mut settings = mine.settings;
-        if theirs.settings.max_depth != base.settings.max_depth {
-            settings.max_depth = theirs.settings.max_depth;
-        }
-        let usual_stop = origin.usual_stop();
-        let stop = if usual_stop == mine.origin.usual_stop() { mine.stop } else { usual_stop };
-        let camera = if differ_in_camera(base, theirs) { theirs.camera } else { mine.camera };
-        Document { camera, settings, stop, ..Document::of(Arc::clone(origin)) }
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::model::{differ_in_camera, partner};
-    use crate::measure::stress::shown_cases;
-    use crate::stages::{Stage, SurfaceRule};
-
-    #[test]
-    fn a_film_is_taken_only_for_the_picture_that_is_compared() {
-        let (mut second, context) = (Second::default(), Context::default());
-        let mine = Document::new(Origin::of_stage(&Stage::ALL[0]));
-        second.document_of(Other::Stage(&Stage::ALL[0]), &mine);
-        let late = second.films.answer(&context);
-        second.document_of(Other::Stage(&Stage::ALL[1]), &mine);
-        late.give(Ok(Arc::new(ReferenceMeans { width: 1, height: 1, means: vec![[0.5; 3]] })));
-        assert!(second.films.take().is_none(), "another picture is compared meanwhile");
-    }
-
-    #[test]
-    fn the_other_stage_shares_the_camera_unless_cameras_differ() {
-        let mut second = Second::default();
-        let mut of_cameras = Vec::new();
-        for stage in Stage::ALL {
-            let mut mine = Document::new(Origin::of_stage(stage));
-            mine.camera.look_from += glam::DVec3::new(0.25, 0.5, 0.125);
-            let Some(other) = partner(stage) else { continue };
-            let theirs = second.document_of(Other::Stage(other), &mine);
-            if partner(stage).is_some_and(|other| differ_in_camera(&stage.recipe(), &other.recipe())) {
-                of_cameras.push(stage.id);
-                assert_ne!(theirs.camera, mine.camera, "{}", stage.id);
-            } else {
-                assert_eq!(theirs.camera, mine.camera, "{}", stage.id);
-            }
+fn other<'a>(
+    tracer: Option<&'a Tracer>,
+    of: Option<&Of>,
+    model: &'a Model,
+    main: &'a Tracer,
+) -> Option<Other<'a>> {
+    let document = &model.document;
+    match model.view.compared(document)? {
+        Partner::Kept(_) => model.view.kept_partner().map(Other::Kept),
+        Partner::Raw => {
+            let denoised = model.view.denoised_of(main.status().run).filter(|_| main.has_samples(document));
+            denoised.map(|_| Other::Traced(Partner::Raw, main, document))
         }
-        assert!(of_cameras.contains(&"fov-wide") && !of_cameras.contains(&"glass-schlick"), "{of_cameras:?}");
-    }
-
-    #[test]
-    fn the_book_traces_the_same_picture_by_its_own_rules() {
-        let mut second = Second::default();
-        for case in shown_cases() {
-            let mine = Document::new(Origin::of_case(case));
-            let other = Other::ByTheBook(Arc::clone(&mine.origin), Arc::clone(&mine.checked));
-            let theirs = second.document_of(other, &mine);
-            assert_eq!(theirs.rules().surface, SurfaceRule::Book, "{}", case.id);
-            assert_eq!(
-                (theirs.camera, theirs.settings, theirs.stop),
-                (mine.camera, mine.settings, mine.stop)
-            );
+        partner => {
+            let tracer = tracer.filter(|_| of.is_some_and(|(of, ..)| *of == partner))?;
+            Some(Other::Traced(partner, tracer, &tracer.shown()?.document))
         }
     }
 }

@@ -21,7 +21,7 @@ use moving::Moving;
 use placement::{Zoom, place_at, whole_pixels};
 use selection::Selection;
 
-/// How far right the divider can be dragged; at the right edge, a kept picture is looked at.
+/// How far right the divider can be dragged, so that its handle stays in sight.
 const LAST_PLACE: f32 = 0.9999;
 
 /// How close the pointer must be to the wipe's divider to grab it, in points.
@@ -83,8 +83,8 @@ impl Viewport {
         let mut touch = Touch::default();
         let is_wipe = view.mode() == Some(Mode::Wipe);
         let mut is_held = self.handle_divider(ui, &response, is_wipe, divider);
-        // Nothing acts on a picture that a kept one hides.
-        let is_hidden = view.looked().is_some();
+        // Nothing acts on a picture that another one hides.
+        let is_hidden = view.is_hidden();
         if !is_hidden && !is_held {
             (is_held, touch.is_move) = self.selection.handle(ui, &response, rect, cx);
         }
@@ -100,14 +100,19 @@ impl Viewport {
         let document = Document { camera: *camera, ..live.clone() };
         paint::paint(ui, [room, rect], (&self.placement, *divider), pictures, &document, cx);
         // A wipe shows the traced picture right of the divider.
-        let left = if is_wipe { *divider } else { 0.0 };
+        let left = match view.mode() {
+            Some(Mode::Wipe) => *divider,
+            Some(Mode::Flip) => 1.0,
+            _ => 0.0,
+        };
         let own = rect.with_min_x(rect.lerp_inside(vec2(left, 0.0)).x);
         self.selection.paint(ui, (rect, own.intersect(room)), &document, cx);
         self.moving.paint(ui, own.intersect(room), rect, &document);
         self.pointer = response.hover_pos().filter(|at| rect.contains(*at)).map(|at| place_at(rect, at));
         let pixel = |at| self.placement.pixel_at(at, document.size());
         touch.hovered = response.hover_pos().and_then(pixel);
-        touch.is_over_other = is_wipe && response.hover_pos().is_some_and(|at| at.x < own.left());
+        touch.is_over_other =
+            is_hidden || is_wipe && response.hover_pos().is_some_and(|at| at.x < own.left());
         if response.secondary_clicked()
             && let Some(at) = response.interact_pointer_pos().filter(|at| rect.contains(*at))
             && live.no_rays().is_none()

@@ -27,7 +27,7 @@ pub struct Pictures<'a> {
     /// Numbers to draw in large pixels.
     pub values: &'a PixelValues,
     /// The titles of the two pictures of a comparison, the other one first.
-    pub titles: [String; 2],
+    pub titles: [&'a str; 2],
 }
 
 /// Draws the picture at `rect`, within `room`.
@@ -56,19 +56,19 @@ pub(super) fn paint(
         values.paint(ui, room, rect, document.size(), |at| texture.colour(at));
     }
     let corners = rect.intersect(room);
-    let [theirs, mine] = &titles;
     match (view.mode(), second) {
-        (Some(Mode::Wipe), Some((texture, is_smooth))) => {
-            let size = view.compared_kept().map_or(document.size(), |kept| kept.size());
-            let left = (id(texture, is_smooth), shape_in(rect, size));
-            wipe(ui, &painter, rect, divider, left, [theirs, mine]);
+        (Some(mode @ (Mode::Wipe | Mode::Flip)), Some((texture, is_smooth))) => {
+            let left = (id(texture, is_smooth), shape_in(rect, texture.size()));
+            let divider = if mode == Mode::Flip { 1.0 } else { divider };
+            wipe(ui, &painter, rect, divider, left, titles);
         }
-        (Some(Mode::Difference), _) => {
-            title(ui, &painter, corners, Align2::LEFT_TOP, &format!("Difference from {theirs}"));
+        (Some(Mode::Difference), Some(_)) => {
+            let words = format!("Difference of {} and {}", titles[0], titles[1]);
+            title(ui, &painter, corners, Align2::LEFT_TOP, &words);
         }
         _ => {}
     }
-    let is_difference = view.mode() == Some(Mode::Difference);
+    let is_difference = view.mode() == Some(Mode::Difference) && second.is_some();
     let scale = if is_difference { Some(HeatScale::DIFFERENCE) } else { view.show().scale(&view.tone) };
     if let Some(scale) = scale {
         legend(ui, &painter, corners, &scale);
@@ -84,7 +84,7 @@ pub(super) fn paint(
         let (font, colour) = (TextStyle::Body.resolve(ui.style()), ui.visuals().weak_text_color());
         painter.text(rect.center(), Align2::CENTER_CENTER, text, font, colour);
     }
-    if view.looked().is_none() {
+    if !view.is_hidden() {
         paths.paint(document, ui, &painter, rect);
     }
 }

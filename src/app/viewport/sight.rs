@@ -1,7 +1,7 @@
 //! "Show me": what the window showed before a sight, to return to it.
 
 use super::placement::Placement;
-use crate::app::model::{Document, Mode, Origin, Show, ViewState, With};
+use crate::app::model::{Document, Mode, Origin, Partner, Show, ViewState};
 use crate::scene::Camera;
 use crate::stages::{Means, Stage};
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// A sight that is shown, and what was shown before.
 pub struct Sighted {
     origin: Arc<Origin>,
-    looks: (Show, Option<Mode>, With),
+    looks: (Show, Option<Mode>, Partner),
     view: ViewState,
     placement: Placement,
     /// The camera before, if it was not the stage's.
@@ -27,7 +27,7 @@ impl Sighted {
         let home = document.origin.recipe.camera;
         let mut before = Sighted {
             origin: Arc::clone(&document.origin),
-            looks: (view.show(), view.mode(), view.with()),
+            looks: (view.show(), view.mode(), view.partner),
             view: view.clone(),
             placement: placement.clone(),
             camera: (document.camera != home).then_some(document.camera),
@@ -37,7 +37,8 @@ impl Sighted {
         match stage.sight.means {
             Means::Luminance(range) => view.tone.range = range,
             Means::Wipe(divider) => {
-                view.toggle(Mode::Wipe, With::Stage);
+                view.partner = Partner::Usual;
+                view.toggle(Mode::Wipe);
                 view.divider = divider;
             }
             _ => {}
@@ -46,13 +47,13 @@ impl Sighted {
             Some(part) => placement.show_part(part),
             None => placement.fit(),
         }
-        before.looks = (view.show(), view.mode(), view.with());
+        before.looks = (view.show(), view.mode(), view.partner);
         before
     }
 
     /// Whether the window still shows it.
     pub fn lasts(&self, document: &Document, view: &ViewState) -> bool {
-        Arc::ptr_eq(&self.origin, &document.origin) && self.looks == (view.show(), view.mode(), view.with())
+        Arc::ptr_eq(&self.origin, &document.origin) && self.looks == (view.show(), view.mode(), view.partner)
     }
 
     /// Whether another picture is shown.
@@ -69,11 +70,7 @@ impl Sighted {
             document.camera = camera;
         }
         let exposure = view.tone.exposure;
-        let mut kept = std::mem::take(&mut view.kept);
-        if let Some(compared) = self.view.kept.meant().filter(|_| self.view.with() == With::Kept) {
-            let place = kept.iter().position(|other| other.number == compared.number);
-            place.into_iter().for_each(|place| kept.choose(place));
-        }
+        let kept = std::mem::take(&mut view.kept);
         *view = self.view;
         (view.kept, view.tone.exposure) = (kept, exposure);
         *placement = self.placement;
@@ -112,10 +109,10 @@ mod tests {
         other.choose(if view.show() == Show::Normals { Show::Albedo } else { Show::Normals });
         assert!(!sight.lasts(&document, &other));
         let mut other = view.clone();
-        other.toggle(Mode::Difference, With::Kept);
+        other.toggle(Mode::Difference);
         assert!(!sight.lasts(&document, &other));
         let mut other = view.clone();
-        other.look(0);
+        other.toggle(Mode::Flip);
         assert!(!sight.lasts(&document, &other));
         let again = Document::new(Origin::of_stage(stage));
         assert!(!sight.lasts(&again, &view) && sight.is_of_another(&again));

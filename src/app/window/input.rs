@@ -23,25 +23,31 @@ const REMOTE: [(Key, Command); 5] = [
 ];
 
 /// Keys that mean the same as others.
-const ALSO: [(Command, Modifiers, Key); 3] = [
+const ALSO: [(Command, Modifiers, Key); 5] = [
     (Command::Redo, Modifiers::COMMAND, Key::Y),
     (Command::Help, Modifiers::NONE, Key::Questionmark),
+    // The list of rays is vertical.
+    (Command::NextRay, Modifiers::NONE, Key::ArrowDown),
+    (Command::PreviousRay, Modifiers::NONE, Key::ArrowUp),
     // The Delete key of an Apple keyboard.
     (Command::DeleteSphere, Modifiers::NONE, Key::Backspace),
 ];
 
 /// Turns keys into commands. Returns whether held keys may move the camera.
 pub fn take_keys(context: &egui::Context, is_presenting: bool, commands: &mut Vec<Command>) -> bool {
-    if context.text_edit_focused() {
-        return false;
-    }
+    let is_typing = context.text_edit_focused();
     // An open menu or list has the keys that are pressed alone.
     let has_popup = egui::Popup::is_any_open(context);
     let is_focused = context.memory(|memory| memory.focused().is_some());
-    let keys_of_controls = [Key::Tab, Key::Space, Key::ArrowLeft, Key::ArrowRight];
+    let keys_of_controls =
+        [Key::Tab, Key::Space, Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown];
     for (command, shortcut) in shortcuts(is_presenting) {
         // In a focused control, Tab moves on, Space presses it and arrows change it.
         let is_plain = shortcut.modifiers == Modifiers::NONE;
+        let is_function_key = shortcut.logical_key >= Key::F1 && shortcut.logical_key <= Key::F12;
+        if is_typing && !is_function_key {
+            continue;
+        }
         let is_of_control = is_focused && keys_of_controls.contains(&shortcut.logical_key);
         if is_plain && (has_popup || is_of_control) {
             continue;
@@ -63,7 +69,7 @@ pub fn take_keys(context: &egui::Context, is_presenting: bool, commands: &mut Ve
             }
         }
     }
-    !has_popup
+    !has_popup && !is_typing
 }
 
 /// Takes the events that the window system sends instead of Ctrl+C, and returns how many there were.

@@ -1,19 +1,23 @@
 //! Where everything is drawn in a frame: panels, the picture, what lies over it, and dialogs.
 
 use super::Window;
-use crate::app::commands::{PanelContext, Requests, Snapshot};
+use crate::app::commands::{PanelContext, Requests};
 use crate::app::model::{Mode, Model, Remembered, Tab};
-use crate::app::panels::{bar, controls, first_steps, present, right, stage_panel, status};
+use crate::app::panels::{bar, compare, controls, first_steps, present, right, stage_panel, status};
 use crate::app::toolkit::theme;
 use crate::app::tools::dock;
 use crate::app::tools::inspector::Inspector;
-use crate::app::tracing::second::Second;
+use crate::app::tracing::Tracing;
+use crate::app::tracing::second::Other;
 use crate::app::viewport::display::Display;
 use crate::app::viewport::{Pictures, Touch};
 use eframe::egui::{self, Ui};
 
 /// Windows narrower than this many points have no room for two panels beside the picture.
 pub(super) const NARROW: f32 = 1000.0;
+
+/// In windows lower than this many points, what is compared scrolls with the text.
+const LOW: f32 = 500.0;
 
 impl Window {
     /// Draws everything. Each panel gets the state that it may change, the facts, and the list of commands to add to.
@@ -45,6 +49,7 @@ impl Window {
         let Model { document, view, remembered, .. } = model;
         let has = &cx.model.remembered;
         let (room, is_narrow) = (ui.available_width(), ui.available_width() < NARROW);
+        let is_low = ui.available_height() < LOW;
         bar::ui(ui, cx);
         status::ui(ui, cx, tracing.sizer.offer);
         let mut tabs = Vec::new();
@@ -74,9 +79,17 @@ impl Window {
                     Tab::Stage => {
                         right::foot(ui, |ui| {
                             display.tone.ui(ui, view, cx);
-                            numbers(ui, cx, display, &tracing.second, &tools.inspector);
+                            if !is_low {
+                                compare::ui(ui, cx);
+                            }
+                            numbers(ui, cx, display, tracing, &tools.inspector);
                         });
-                        right::scrolling(ui, |ui| stage_panel::ui(ui, cx));
+                        right::scrolling(ui, |ui| {
+                            stage_panel::ui(ui, cx);
+                            if is_low {
+                                compare::ui(ui, cx);
+                            }
+                        });
                     }
                     Tab::Code => tools.code.ui(ui, cx),
                     Tab::Check => tools.check.ui(ui, cx),
@@ -89,8 +102,8 @@ impl Window {
     /// The picture, with the dock and the card of first steps below.
     fn middle(&mut self, ui: &mut Ui, cx: &PanelContext) -> Touch {
         if cx.model.has_panels() {
-            let Window { model, tools, display, .. } = self;
-            dock::ui(ui, model, tools, &mut display.kept, cx);
+            let Window { model, tools, .. } = self;
+            dock::ui(ui, model, tools, cx);
         }
         if cx.model.has_panels() && cx.model.remembered.dock.is_none() {
             first_steps::ui(ui, cx);
@@ -113,14 +126,18 @@ impl Window {
         let Model { document, view, selected, .. } = model;
         let layer = view.show().layer();
         let shown = tracing.main.shown();
-        let is_scaled = view.compared_kept().is_some_and(|kept| kept.size() != cx.document().size());
+        let other = tracing.other(&cx.model);
+        let is_scaled = matches!(other, Some(Other::Kept(kept)) if kept.size() != cx.document().size());
+        let ([theirs, mine], is_short) = (cx.model.side_names(), view.mode() == Some(Mode::Difference));
         let pictures = Pictures {
             main: match layer.and_then(|layer| display.layers.shown(layer)) {
                 Some(layer) => Some((&layer.texture, layer.divisor > 1)),
                 None => shown.map(|shown| (&shown.texture, shown.divisor > 1)),
             },
-            titles: titles(cx, &tracing.second),
-            second: tracing.second.shown(view).map(|shown| (&shown.texture, shown.divisor > 1 || is_scaled)),
+            titles: [&theirs[usize::from(is_short)], &mine[usize::from(is_short)]],
+            second: other
+                .and_then(|other| tracing.second.texture(&other))
+                .map(|(texture, is_preview)| (texture, is_preview || is_scaled)),
             paths: &tools.paths,
             values: &display.values,
         };
@@ -139,7 +156,7 @@ impl Window {
             let view = &cx.model.view;
             let has_scale = view.mode() == Some(Mode::Difference) || view.show().scale(&view.tone).is_some();
             present::magnify(ui, room, at, has_scale, |ui| {
-                numbers(ui, cx, display, &tracing.second, &tools.inspector);
+                numbers(ui, cx, display, tracing, &tools.inspector);
             });
         }
         self.tools.inspector.hover(touch.hovered, touch.is_over_other);
@@ -155,26 +172,12 @@ impl Window {
     }
 }
 
-/// The titles of the two sides of a comparison, the other one first.
-fn titles(snapshot: &Snapshot, second: &Second) -> [String; 2] {
-    let view = &snapshot.model.view;
-    let other = match view.compared_kept() {
-        Some(kept) => Some(view.kept.title(kept)),
-        None => second.shown(view).map(|shown| shown.document.title()),
-    };
-    [other.unwrap_or_default(), snapshot.document().title()]
-}
-
 /// The numbers of the pixel under the pointer.
-fn numbers(ui: &mut Ui, snapshot: &Snapshot, display: &Display, second: &Second, inspector: &Inspector) {
-    let view = &snapshot.model.view;
+fn numbers(ui: &mut Ui, cx: &PanelContext, display: &Display, tracing: &Tracing, inspector: &Inspector) {
+    let view = &cx.model.view;
     let at = inspector.readout().map(|readout| readout.pixel.at);
     let value = at.filter(|_| view.show().layer().is_some()).and_then(|at| display.layers.value_at(at));
-    let (mine, other) = (snapshot.document(), second.film(view));
-    let theirs = match view.compared_kept() {
-        Some(kept) => view.kept.short_title(kept),
-        None => other.map(|other| other.document().place()).unwrap_or_default(),
-    };
-    let documents = [other.as_ref().map_or(mine, |other| other.document()), mine];
-    inspector.ui(ui, [&theirs, &mine.place()], documents, view.mode(), value);
+    let other = tracing.other(&cx.model).map_or(Some(cx.document()), |other| other.document());
+    let [[_, theirs], [_, mine]] = cx.model.side_names();
+    inspector.ui(ui, [&theirs, &mine], [other, Some(cx.document())], view.mode(), value);
 }

@@ -135,6 +135,9 @@ impl Window {
         let [undo, redo] = self.changes.labels(self.document());
         Snapshot {
             status: self.tracing.main.status().clone(),
+            other: self.tracing.other_status(&self.model),
+            verdict: self.display.kept.verdict(&self.model, &self.tracing),
+            earlier: self.tracing.earlier(self.document()).to_vec(),
             seconds_before: self.tracing.seconds_before,
             undo,
             redo,
@@ -226,7 +229,7 @@ impl Window {
             self.escape();
         }
         let before = self.model.document.camera;
-        if self.model.view.looked().is_none() && input::fly(context, &mut self.model.document.camera) {
+        if !self.model.view.is_hidden() && input::fly(context, &mut self.model.document.camera) {
             if let Some(reason) = self.document().no_rays() {
                 self.model.document.camera = before;
                 self.shell.toasts.good(reason);
@@ -273,7 +276,9 @@ impl Window {
             self.model.own_stop = document.own_stop();
         }
         let room = self.display.viewport.room_pixels;
-        let needs_film = self.files.needs_film() || self.autosave.is_restoring;
+        // The dock opens when devices are compared, but their films stay.
+        let needs_film =
+            self.files.needs_film() || self.autosave.is_restoring || self.model.other_device().is_some();
         self.tracing.follow_size(context, &mut self.model, room, needs_film);
         if self.changes.follow(context, &self.model.document) {
             self.tracing.seconds_before = Some(0.0);
@@ -308,7 +313,7 @@ impl Window {
         if !has_second {
             model.view.end_comparison();
         }
-        display.kept.follow(context, &model.document, tracing);
+        display.kept.follow(context, model, tracing);
     }
 }
 

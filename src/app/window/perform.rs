@@ -2,7 +2,7 @@
 
 use super::Window;
 use super::layout::NARROW;
-use crate::app::commands::Command;
+use crate::app::commands::{Command, MENUS};
 use crate::app::dialogs::{
     Dialog, LargeSize, Outcome, Purpose, SaveBox, What, default_folder, file_name, samples_wanted, stage_list,
 };
@@ -10,8 +10,8 @@ use crate::app::files::edits;
 use crate::app::model::spheres::grip::new_body;
 use crate::app::model::spheres::{self, Selected};
 use crate::app::model::{
-    Body, Bookmark, Device, Dock, Document, Edit, Mode, Model, Origin, Presentation, Remembered, Show,
-    Source, Tab, Tone, ViewState, With, companion, device, navigation,
+    Body, Bookmark, Device, Dock, Document, Edit, Mode, Model, Origin, Partner, Presentation, Remembered,
+    Show, Source, Tab, Tone, ViewState, companion, device, navigation,
 };
 use crate::app::toolkit::Finder;
 use crate::app::toolkit::widgets::focus;
@@ -20,7 +20,7 @@ use crate::film::Film;
 use crate::job::output::OutputFormat;
 use crate::measure::grouped;
 use crate::stages::{BOOK_URL, Stage};
-use eframe::egui::{self, Context, FocusDirection, ViewportCommand};
+use eframe::egui::{self, Context, ViewportCommand};
 use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::Arc;
@@ -90,7 +90,7 @@ impl Window {
             C::Brighter => view.tone.expose(Tone::STEP),
             C::Darker => view.tone.expose(-Tone::STEP),
             C::NoExposure => view.tone.exposure = 0.0,
-            C::Denoise => view.is_denoised ^= true,
+            C::Denoise => view.toggle_denoise(),
             C::Theme(theme) => {
                 remembered.theme = theme;
                 context.set_theme(theme);
@@ -109,7 +109,7 @@ impl Window {
                 }
                 focus(context, name);
             }
-            C::FocusControls => context.memory_mut(|memory| memory.move_focus(FocusDirection::Next)),
+            C::FocusControls => self.focus_next_panel(context),
             C::KeptDock => self.toggle_dock(Dock::Kept),
             C::LanesDock => self.toggle_dock(Dock::Lanes),
             C::ErrorDock => self.toggle_dock(Dock::Error),
@@ -123,22 +123,30 @@ impl Window {
                 if std::mem::take(&mut model.is_paused) {
                     tracing.resume();
                 }
-                tracing.restart();
+                tracing.restart(document);
             }
             C::RenderAtSize => {
                 document.has_own_size = false;
                 tracing.sizer.ask();
             }
-            C::Device(device) => remembered.device = device,
-            C::SwitchDevice => remembered.device.toggle(Device::Gpu),
-            C::Reference => remembered.device.toggle(Device::Reference),
+            C::Device(device) => model.choose_device(device),
+            C::SwitchDevice => {
+                let device = remembered.device.toggled(Device::Gpu);
+                model.choose_device(device);
+            }
+            C::Reference => {
+                let device = remembered.device.toggled(Device::Reference);
+                model.choose_device(device);
+            }
 
             C::Keep => display.kept.is_wanted = true,
             C::Kept(place) => view.look(place),
-            C::Flip => view.flip(),
-            C::KeptWipe => view.toggle(Mode::Wipe, With::Kept),
-            C::KeptDifference => view.toggle(Mode::Difference, With::Kept),
-            C::OnlyNoise => self.ask_only_noise(context),
+            C::OnlyNoise => {
+                display.kept.is_asked = true;
+                if view.mode().is_none() {
+                    view.toggle(Mode::Wipe);
+                }
+            }
             C::GoOnFromKept => self.go_on_from_kept(),
             C::DeleteKept => view.delete_kept(),
 
@@ -147,9 +155,16 @@ impl Window {
             C::Extreme(case) => self.show_origin(Origin::of_case(case)),
             C::PreviousStage | C::NextStage => self.step_stage(command == C::NextStage),
             C::ShowMe => self.toggle_sight(),
-            C::Wipe => self.compare(Mode::Wipe),
-            C::Difference => self.compare(Mode::Difference),
-            C::BookArithmetic => view.toggle(Mode::Wipe, With::Book),
+            C::Wipe => view.toggle(Mode::Wipe),
+            C::Flip => view.toggle(Mode::Flip),
+            C::Difference => view.toggle(Mode::Difference),
+            C::CompareWith(partner) => self.compare_with(partner),
+            C::CompareDevices => self.compare_devices(),
+            C::CompareFile => self.ask_path(context, Purpose::Compare),
+            C::CompareMine => self.compare_mine(context),
+            C::RenderAtPartnerSize => {
+                view.kept_partner().into_iter().for_each(|kept| document.give_size(kept.size()));
+            }
             C::ListPaths => self.list_paths(context),
             C::NextRay | C::PreviousRay => tools.paths.step(command == C::NextRay),
             C::ClearPaths => {
@@ -184,7 +199,7 @@ impl Window {
         let Window { model, tools, display, commands, .. } = self;
         if model.presentation.is_some() {
             commands.push(Command::Present);
-        } else if model.view.looked().is_some() {
+        } else if model.view.is_hidden() {
             model.view.end_look();
         } else if tools.paths.len() > 0 {
             commands.push(Command::ClearPaths);
@@ -221,6 +236,9 @@ impl Window {
 
     pub(super) fn show_document(&mut self, document: Document) {
         self.end_sight();
+        if !Arc::ptr_eq(&document.origin, &self.document().origin) {
+            self.model.view.leave_partner();
+        }
         self.model.document = document;
         self.model.selected = None;
         self.tools.forget();
@@ -321,10 +339,37 @@ impl Window {
 
     // View
 
-    /// Compares with the other stage or, without a stage, with the book's arithmetic.
-    pub(super) fn compare(&mut self, mode: Mode) {
-        let is_by_book = self.document().stage().is_none() || self.model.view.with() == With::Book;
-        self.model.view.toggle(mode, if is_by_book { With::Book } else { With::Stage });
+    fn compare_with(&mut self, partner: Partner) {
+        self.model.view.compare_with(partner);
+        if matches!(partner, Partner::Device(_)) {
+            self.model.remembered.dock = Some(Dock::Error);
+        }
+    }
+
+    /// Compares CPU and GPU, or ends that.
+    fn compare_devices(&mut self) {
+        let other = if self.model.remembered.device == Device::Gpu { Device::Cpu } else { Device::Gpu };
+        if self.model.other_device() == Some(other) {
+            self.model.view.end_comparison();
+            return;
+        }
+        if !matches!(self.model.remembered.device, Device::Cpu | Device::Gpu) {
+            self.model.remembered.device = Device::Cpu;
+        }
+        self.compare_with(Partner::Device(other));
+    }
+
+    /// Traces the stage of the picture that is checked, and compares the two.
+    fn compare_mine(&mut self, context: &Context) {
+        let Some(path) = self.model.remembered.mine.clone() else { return };
+        if let Some((stage, size)) = self.tools.check.found() {
+            if self.document().stage() != Some(stage) {
+                self.show_origin(Origin::of_stage(stage));
+            }
+            self.model.document.give_size(size);
+        }
+        self.model.remembered.tab = Tab::Stage;
+        self.display.kept.read(context, &self.model, path);
     }
 
     /// Leaves views and comparisons that the picture of now cannot have.
@@ -334,10 +379,10 @@ impl Window {
             self.refuse(show.name(), &reason);
             self.model.view.leave_show();
         }
-        let is_kept_difference =
-            self.model.view.mode() == Some(Mode::Difference) && self.model.view.compared_kept().is_some();
-        if let Some(reason) = self.model.not_subtractable().filter(|_| is_kept_difference) {
-            self.shell.toasts.good(reason);
+        if self.model.view.mode() == Some(Mode::Difference)
+            && let Some(reason) = self.model.not_subtractable()
+        {
+            self.shell.toasts.good_with(reason, &[Command::RenderAtPartnerSize]);
             self.model.view.end_comparison();
         }
         let Some(sight) = &self.display.sight else { return };
@@ -381,6 +426,21 @@ impl Window {
         let had_panels = std::mem::replace(&mut remembered.has_panels, true);
         let panel = panel(remembered);
         *panel = !*panel || !had_panels;
+    }
+
+    /// Gives the focus to a control of the next panel.
+    fn focus_next_panel(&mut self, context: &Context) {
+        let Remembered { tab, has_controls, has_info, .. } = self.model.remembered;
+        let is_left = has_controls && (context.content_rect().width() >= NARROW || tab == Tab::Controls);
+        let of_left = if self.document().no_rays().is_some() { "Size and samples" } else { "Field of view" };
+        let panels = [(MENUS[0], true), (of_left, is_left), ("Compare with", has_info && tab == Tab::Stage)];
+        let mut shown = (0..panels.len()).map(|step| (self.shell.panel + step) % panels.len());
+        if self.model.has_panels()
+            && let Some(next) = shown.find(|next| panels[*next].1)
+        {
+            self.shell.panel = next + 1;
+            focus(context, panels[next].0);
+        }
     }
 
     pub(super) fn toggle_dock(&mut self, dock: Dock) {
@@ -442,23 +502,13 @@ impl Window {
         }
     }
 
-    // Kept pictures
-
-    /// Tests whether the shown picture and the chosen kept one differ by noise alone.
-    pub(super) fn ask_only_noise(&mut self, context: &Context) {
-        let Window { model, tracing, display, .. } = self;
-        if let Some(kept) = model.view.kept.meant() {
-            display.kept.verdict.ask(context, kept, (&model.document, &tracing.main));
-            model.remembered.dock = Some(Dock::Kept);
-        }
-    }
-
     /// Goes on with the chosen kept picture.
     pub(super) fn go_on_from_kept(&mut self) {
-        let Some(kept) = self.model.view.kept.meant().cloned() else { return };
+        let Some(kept) = self.model.view.kept_partner().cloned() else { return };
+        let Some(document) = kept.document.clone() else { return };
         match kept.film.try_copy() {
             Ok(film) => {
-                self.show_document(Document { has_own_size: true, ..kept.document.clone() });
+                self.show_document(Document { has_own_size: true, ..document });
                 self.model.view.end_comparison();
                 self.adopt(film, kept.seconds);
             }
@@ -496,6 +546,7 @@ impl Window {
     pub(super) fn end_dialog(&mut self, context: &Context, outcome: Outcome) {
         match outcome {
             Outcome::Named(Purpose::Check, path) => self.tools.check.begin(context, &path, None),
+            Outcome::Named(Purpose::Compare, path) => self.display.kept.read(context, &self.model, path),
             Outcome::Named(_, path) => self.files.open(context, path),
             Outcome::Save(what, size, path) => {
                 // If this fails, writing the file tells why.

@@ -3,7 +3,7 @@
 use super::Window;
 use crate::app::commands::Command;
 use crate::app::files::Resumed;
-use crate::app::model::{Dock, Document, Kept, Origin, Source};
+use crate::app::model::{Dock, Document, Kept, Origin, Partner, Source};
 use crate::job::saved::{Opened, Saved};
 use crate::progressive::Stop;
 use eframe::egui::Context;
@@ -49,7 +49,16 @@ impl Window {
                 Err(reason) => self.shell.toasts.bad(format!("Not kept: {reason}")),
             }
         }
-        self.display.kept.verdict.0.follow();
+        while let Some(outcome) = self.display.kept.files.take() {
+            match outcome {
+                Ok(kept) => {
+                    let partner = Partner::Kept(kept.number);
+                    self.model.view.keep(kept);
+                    self.model.view.compare_with(partner);
+                }
+                Err(reason) => self.shell.toasts.bad(format!("Not compared: {reason}")),
+            }
+        }
         while let Some(outcome) = self.files.resumed.take() {
             match outcome {
                 Ok(resumed) => self.go_on(resumed),

@@ -16,6 +16,8 @@ pub struct Shell {
     pub performed: Option<crate::app::commands::Command>,
     /// Something had the keyboard's focus, a popup or a dialog was open, in the frame before.
     pub had_focus: bool,
+    /// The panel that F6 goes to: the bar, the left or the right one.
+    pub panel: usize,
     pub is_dressed: bool,
     /// The window closes as soon as everything is saved.
     pub leaves_when_saved: bool,

@@ -105,6 +105,9 @@ impl Render {
                     self.status.say([error.to_string()]);
                     self.requested = self.film.samples().clone();
                 }
+                // Where the curve of the old one ends.
+                self.estimate_error();
+                self.note_history();
                 self.note_prepared(renderer.as_mut(), took);
                 self.choice = choice.clone();
                 dismiss(backend.replace((choice, renderer)));

@@ -363,11 +363,17 @@ impl Render {
         if is_history || self.estimated_at.elapsed() >= self.estimate_took * ERROR_ESTIMATE_SHARE {
             self.estimate_error();
         }
-        if !is_history {
-            return;
+        if is_history {
+            self.next_history_samples = (samples + 1).next_power_of_two();
+            self.note_history();
         }
-        self.next_history_samples = (samples + 1).next_power_of_two();
-        if let Some(error) = self.status.error {
+    }
+
+    /// Adds the newest error to the history.
+    fn note_history(&mut self) {
+        let samples = self.film.sample_count();
+        let is_known = self.status.history.last().is_some_and(|last| last.samples_per_pixel == samples);
+        if let Some(error) = self.status.error.filter(|_| !is_known) {
             self.status.history.push(HistoryPoint {
                 backend: self.status.backend.as_ref().map_or("", |backend| backend.name),
                 samples_per_pixel: samples,

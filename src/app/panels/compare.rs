@@ -1,0 +1,86 @@
+//! The partner of a comparison, and the tools to compare, which are the same for every partner.
+
+use crate::app::commands::{Command, PanelContext};
+use crate::app::model::{Dock, Partner};
+use crate::app::toolkit::theme;
+use crate::app::toolkit::widgets::{About, caption, command_button, command_switch, entry, list, small};
+use crate::measure::grouped;
+use crate::stages::Stage;
+use eframe::egui::{Label, RichText, Ui};
+
+/// The partner and the tools.
+pub fn ui(ui: &mut Ui, cx: &PanelContext) {
+    let shown = cx.model.view.partner(cx.document()).map(|partner| cx.model.partner_name(partner));
+    let about = About::new("Compare with", "Another picture, to be wiped, flipped and subtracted");
+    ui.scope(|ui| {
+        ui.spacing_mut().combo_width = ui.available_width() - 100.0;
+        list(ui, about, shown.as_deref().unwrap_or("Choose"), |ui| partners(ui, cx));
+    });
+    tools(ui, cx);
+    // The dock says it beside the speeds.
+    if cx.model.other_device().is_none()
+        || cx.model.remembered.dock != Some(Dock::Error)
+        || cx.other.is_none()
+    {
+        verdict(ui, cx);
+    }
+    if cx.model.view.mode().is_some() && cx.model.not_subtractable().is_some() {
+        command_button(ui, cx, Command::RenderAtPartnerSize, "Render at its size");
+    }
+}
+
+fn partners(ui: &mut Ui, cx: &PanelContext) {
+    let choose = |ui: &mut Ui, command: Command| {
+        let (name, reason) = (cx.name(command), cx.disabled_reason(command));
+        let about = About::new(&name, command.help()).disabled_if(reason.as_deref());
+        if entry(ui, cx.is_on(command), about) {
+            cx.send(command);
+        }
+    };
+    for partner in cx.model.partners() {
+        choose(ui, Command::CompareWith(partner));
+    }
+    choose(ui, Command::CompareMine);
+    choose(ui, Command::CompareFile);
+    caption(ui, "Another stage");
+    let others = Stage::ALL.iter().filter(|stage| cx.document().stage() != Some(stage));
+    others.for_each(|stage| choose(ui, Command::CompareWith(Partner::Stage(stage))));
+}
+
+/// The tools, which are the same for every partner.
+pub fn tools(ui: &mut Ui, cx: &PanelContext) {
+    const TOOLS: [(&str, Command); 3] =
+        [("Wipe", Command::Wipe), ("Flip", Command::Flip), ("Difference", Command::Difference)];
+    ui.horizontal_wrapped(|ui| {
+        command_switch(ui, cx, 0.0, &TOOLS);
+        if cx.model.view.mode().is_some() {
+            command_button(ui, cx, Command::OnlyNoise, "Noise?");
+        }
+    });
+}
+
+/// Whether the two differ by more than noise, or how far the other picture is.
+pub fn verdict(ui: &mut Ui, cx: &PanelContext) {
+    if let Some(verdict) = &cx.verdict {
+        let colours = theme::colours(ui);
+        let color = match verdict.is_equal {
+            Some(true) => colours.good,
+            Some(false) => colours.warn,
+            None => colours.weak,
+        };
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            ui.label(RichText::new(verdict.headline).small().color(color));
+            ui.add(Label::new(RichText::new(&verdict.words).small()).wrap());
+        });
+        return;
+    }
+    let [[_, name], _] = cx.model.side_names();
+    match (&cx.other, cx.model.view.compared(cx.document())) {
+        (_, None | Some(Partner::Raw | Partner::Kept(_))) => {}
+        (Some(other), _) => {
+            _ = small(ui, format!("{name}: {} samples per pixel", grouped(other.samples_per_pixel)));
+        }
+        (None, Some(_)) => _ = small(ui, format!("{name} is getting ready\u{2026}")),
+    }
+}
