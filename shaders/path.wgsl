@@ -12,6 +12,7 @@ struct Path {
     // the ray ends.
     sine2: f32,
     bounce: u32,
+    // The sampler's counter, which selects the sample, and its increment per sample.
     counter: u32,
     step: u32,
     // Samples left in the block, including the current one.
@@ -22,6 +23,7 @@ struct Path {
     key: u32,
     // x | y << 16
     pixel: u32,
+    // Left and upper edge of the pixel on the plane at distance 1.
     corner: vec2f,
     sums: vec3u,
     half: u32,
@@ -113,7 +115,7 @@ fn trace(tile: Tile, thread: u32, suspended: u32) -> Traced {
             suspend(path, suspended);
         }
         traced.unfinished = 1u;
-        traced.stuck = select(0u, 1u, ray_is_cut && traced.rays == 0u);
+        traced.stuck = u32(ray_is_cut && traced.rays == 0u);
     }
     traced.rejected = path.rejected;
     return traced;
@@ -173,17 +175,16 @@ fn take_anchored(ray: Ray, found: Nearest, first: u32) -> Nearest {
 
 // The hit point.
 fn hit_point(ray: Ray, t: f32, record: ShadingRecord) -> SurfacePoint {
-    var point: SurfacePoint;
     if SURFACE != SURFACE_EXACT {
-        point = book_point(ray, t, record.reference, record.curvature);
-    } else if ANCHORED && is_anchored(record) {
-        point = anchored_surface_point(ray, t, record.reference, record.inward, record.curvature);
-    } else if SPECKS {
-        point = speck_surface_point(ray, t, record.reference, record.curvature, record.radius);
-    } else {
-        point = surface_point(ray, t, record.reference, record.curvature, record.radius);
+        return book_point(ray, t, record.reference, record.curvature);
     }
-    return point;
+    if ANCHORED && is_anchored(record) {
+        return anchored_surface_point(ray, t, record.reference, record.inward, record.curvature);
+    }
+    if SPECKS {
+        return speck_surface_point(ray, t, record.reference, record.curvature, record.radius);
+    }
+    return surface_point(ray, t, record.reference, record.curvature, record.radius);
 }
 
 // Shades a hit: adds light, ends the path, and starts the next sample if it has ended. Returns whether it has. If the path
@@ -332,10 +333,7 @@ fn spawn_ray(path: ptr<function, Path>, ended: bool, hit: u32, record: ShadingRe
 
 // The camera ray of a new path.
 fn generate_camera_ray(corner: vec2f, drawn: Drawn) -> CameraRay {
-    var jitter = drawn.jitter;
-    if !ANTIALIASING {
-        jitter = vec2f(0.5);
-    }
+    let jitter = select(vec2f(0.5), drawn.jitter, ANTIALIASING);
     if has_lens() {
         let on_lens = sqrt(drawn.pair.x) * drawn.sine_cosine.yx;
         return lens_ray(job.camera, corner, jitter, on_lens);

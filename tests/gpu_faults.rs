@@ -47,8 +47,8 @@ fn fault_in_any_phase_completes_picture() {
             (InjectionPoint::Prepare, 0),
             (InjectionPoint::Dispatch, 0),
             (InjectionPoint::Dispatch, 5),
-            (InjectionPoint::Fetch, 0),
-            (InjectionPoint::Fetch, 1),
+            (InjectionPoint::Readback, 0),
+            (InjectionPoint::Readback, 1),
         ];
         for (point, after) in points {
             let Some(backend) = failing(fault, point, after) else { return };
@@ -62,7 +62,7 @@ fn fault_in_any_phase_completes_picture() {
 #[test]
 fn fault_during_pause_is_survived() {
     for fault in [Fault::Lost, Fault::Hang] {
-        let Some(backend) = failing(fault, InjectionPoint::Fetch, 1) else { return };
+        let Some(backend) = failing(fault, InjectionPoint::Readback, 1) else { return };
         let mut progressive = Progressive::spawn().unwrap();
         progressive.start(RenderRequest::new(job([64, 36]), backend, Plan::samples(64)));
         // A pause fetches the samples from the device.

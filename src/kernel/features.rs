@@ -1,6 +1,7 @@
 //! Features: properties of a job that need code in a kernel. Each is declared once: how it follows from the job, the part
 //! of a kernel that implements it, and its pipeline override on the GPU.
 
+use super::record::last;
 use super::{AnchoredSphere, Roots, Tag, UNIFORM_ANCHORED, UNIFORM_SPHERES};
 use crate::job::render::{RenderJob, SamplerKind};
 use crate::scene::Material;
@@ -55,9 +56,9 @@ pub mod parts {
 /// How a job's spheres are sorted.
 #[derive(Clone, Copy, Debug)]
 pub struct SortedSpheres<'a, R> {
-    /// Spheres of which only the nearer root counts.
+    /// Number of spheres whose nearer root alone counts.
     pub opaque_count: usize,
-    /// Spheres of which both roots count.
+    /// Number of spheres whose roots both count.
     pub two_root_count: usize,
     /// Spheres described relative to a point on their surface.
     pub anchored: &'a [AnchoredSphere<R>],
@@ -106,16 +107,6 @@ fn declared<T: Override>(name: &str, default: T) -> String {
     let number = default.number();
     let literal = if T::TYPE == "bool" { (number != 0).to_string() } else { format!("{number}u") };
     format!("override {}: {} = {literal};\n", name.to_uppercase(), T::TYPE)
-}
-
-/// Selects the last of one or two values.
-macro_rules! last {
-    ($value:expr) => {
-        $value
-    };
-    ($value:expr, $other:expr) => {
-        $other
-    };
 }
 
 /// Declares [`Features`]. Each feature has a type and, in brackets: the value that needs no kernel code (`off`); the

@@ -2,7 +2,7 @@
 //! struct for them but a constant per field with its first word: `SUSPENDED_STATE` for `state` in [`GpuSuspendedPath`].
 //! `SUSPENDED_WORDS` is the number of words.
 
-use super::record::{Field, Record, Shared, named, record};
+use super::record::{Field, Record, Shared, last, record};
 use bytemuck::{Pod, Zeroable};
 use std::fmt::Write;
 

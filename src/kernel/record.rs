@@ -165,7 +165,7 @@ macro_rules! record {
                 $(type $real = f32;)?
                 vec![$(Field {
                     name: stringify!($field),
-                    wgsl: named!(<$type as Shared>::wgsl() $(, $other.to_owned())?),
+                    wgsl: last!(<$type as Shared>::wgsl() $(, $other.to_owned())?),
                     offset: std::mem::offset_of!(Self, $field),
                 }),*]
             }
@@ -180,12 +180,12 @@ macro_rules! single {
     };
 }
 
-/// Selects the last of one or two names.
-macro_rules! named {
-    ($name:expr) => {
-        $name
+/// Selects the last of one or two values.
+macro_rules! last {
+    ($value:expr) => {
+        $value
     };
-    ($name:expr, $other:expr) => {
+    ($value:expr, $other:expr) => {
         $other
     };
 }
@@ -226,4 +226,4 @@ macro_rules! column_of {
     };
 }
 
-pub(super) use {column_of, loads, named, record, single};
+pub(super) use {column_of, last, loads, record, single};

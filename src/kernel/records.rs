@@ -3,7 +3,7 @@
 //! Rust lays out a struct without gaps if each `vec3f` and `vec4f` begins at a multiple of 16 bytes, as WGSL requires.
 //! A test compares the two layouts.
 
-use super::record::{Columns, Field, Record, Shape, Shared, column_of, loads, named, record, single};
+use super::record::{Columns, Field, Record, Shape, Shared, column_of, last, loads, record, single};
 use super::{COUNT_MASK, ORDER_SHIFT, Real, Roots, UNDER_EYE, UNIFORM_ANCHORED, UNIFORM_SPHERES};
 use bytemuck::{Pod, Zeroable};
 

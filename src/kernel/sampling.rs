@@ -1,4 +1,4 @@
-//! What the samplers of all tracers share. Each number is a pure function of (sampler, seed, pixel, sample index, bounce).
+//! Sampling code that all tracers share. Each number is a pure function of (sampler, seed, pixel, sample index, bounce).
 //! No state is carried along a path, so a sample does not depend on what was traced before it.
 
 use crate::job::render::{RenderSettings, SamplerKind};

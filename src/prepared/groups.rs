@@ -1,7 +1,7 @@
 //! Decides how to intersect each sphere and which origin coordinates are relative to, in `f64`, before anything is
 //! rounded.
 
-use super::facts::Facts;
+use super::overlaps::Overlaps;
 use crate::job::render::RenderJob;
 use crate::kernel::{HALF_EPSILON, Roots};
 use crate::scene::{Camera, Sphere};
@@ -97,13 +97,13 @@ impl Eye {
 }
 
 impl Groups {
-    pub fn of(job: &RenderJob, facts: &Facts) -> Self {
+    pub fn of(job: &RenderJob, overlaps: &Overlaps) -> Self {
         let (scene, eye) = (job.scene(), Eye::of(job.camera()));
         let is_exact = job.rules().surface == SurfaceRule::Exact;
         let is_opaque = |s: &Sphere| !scene.material_of(s).is_transparent();
         let uncovered = || {
             let listed = scene.spheres.iter().enumerate();
-            listed.filter(|(index, _)| !is_exact || !facts.covers(*index as u32))
+            listed.filter(|(index, _)| !is_exact || !overlaps.covers(*index as u32))
         };
         let cavity = uncovered()
             .map(|(_, sphere)| sphere)

@@ -104,9 +104,7 @@ impl<R: Real> Hierarchy<R> {
         for (region, shift) in shifts {
             nodes.extend(region.nodes[1..].iter().map(|node| converted(node, &region.nodes, shift)));
         }
-        let whole = top.nodes[0].aabb();
-        let extent = whole.min.abs().max_element().max(whole.max.abs().max_element());
-        (Hierarchy { nodes, wide: None, extent: R::from_f64(f64::from(extent)), ranks }, deepest)
+        (Hierarchy { nodes, wide: None, extent: extent(top.nodes[0].aabb()), ranks }, deepest)
     }
 
     /// A hierarchy for the GPU: see [`Hierarchy::build_unless`].
@@ -116,10 +114,14 @@ impl<R: Real> Hierarchy<R> {
         origin: DVec3,
     ) -> Option<Self> {
         let (mut wide, whole) = WideBvh::build_unless(cancel, spheres, origin)?;
-        let extent = whole.min.abs().max_element().max(whole.max.abs().max_element());
         let ranks = std::mem::take(&mut wide.order);
-        Some(Hierarchy { nodes: Vec::new(), wide: Some(wide), extent: R::from_f64(f64::from(extent)), ranks })
+        Some(Hierarchy { nodes: Vec::new(), wide: Some(wide), extent: extent(&whole), ranks })
     }
+}
+
+/// The largest absolute coordinate of a box.
+fn extent<R: Real>(whole: &Aabb) -> R {
+    R::from_f64(f64::from(whole.min.abs().max(whole.max.abs()).max_element()))
 }
 
 /// A node among `siblings` for the kernel, with its children and spheres this much further back.

@@ -3,9 +3,9 @@
 mod bounded;
 mod camera;
 mod effort;
-mod facts;
 mod groups;
 pub mod hierarchy;
+mod overlaps;
 mod parted;
 mod regions;
 pub mod wide_bvh;
@@ -18,10 +18,10 @@ use crate::kernel::{
 };
 use crate::scene::{Material, Scene};
 use crate::stages::SurfaceRule;
-use facts::Facts;
 use glam::DVec3;
 use groups::{Anchored, Groups};
 use hierarchy::{Effort, Hierarchy};
+use overlaps::Overlaps;
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -95,7 +95,7 @@ pub struct PreparedScene<R> {
     /// The origin of the prepared coordinates, in scene coordinates.
     pub origin: DVec3,
     groups: Groups,
-    facts: Arc<Facts>,
+    overlaps: Arc<Overlaps>,
     warning: Option<String>,
 }
 
@@ -138,8 +138,8 @@ impl<R: Real> PreparedScene<R> {
         cancel: &AtomicBool,
         announce: impl FnOnce(&Features),
     ) -> Option<Self> {
-        let facts = Arc::new(Facts::of(job.scene()));
-        let groups = Groups::of(job, &facts);
+        let overlaps = Arc::new(Overlaps::of(job.scene()));
+        let groups = Groups::of(job, &overlaps);
         let (mut listed, mut hierarchy, mut hierarchy_source) =
             (groups.in_list_order(), None, HierarchySource::None);
         let is_wanted = job.rules().surface == SurfaceRule::Exact && listed.len() >= HIERARCHY_MIN_SPHERES;
@@ -201,10 +201,10 @@ impl<R: Real> PreparedScene<R> {
             features: Features::default(),
             origin: groups.origin,
             groups: Groups::default(),
-            facts,
+            overlaps,
             warning: None,
         };
-        prepared.see(job, groups);
+        prepared.set_view(job, groups);
         Some(prepared)
     }
 
@@ -214,18 +214,18 @@ impl<R: Real> PreparedScene<R> {
         if cancel.load(Ordering::Relaxed) {
             return None;
         }
-        let followed = old.and_then(|(mut old, before)| old.follow(&before, job).then_some(old));
-        let prepared = followed.or_else(|| Self::with_tree(job, Some(Tree::Quick), cancel, |_| ()));
+        let reused = old.and_then(|(mut old, before)| old.try_reuse(&before, job).then_some(old));
+        let prepared = reused.or_else(|| Self::with_tree(job, Some(Tree::Quick), cancel, |_| ()));
         prepared.filter(|_| !cancel.load(Ordering::Relaxed))
     }
 
     /// Turns the prepared scene of `before` into that of `job` if only camera and settings differ and the hierarchy can
     /// be reused; otherwise changes nothing and returns false.
-    pub fn follow(&mut self, before: &RenderJob, job: &RenderJob) -> bool {
+    pub fn try_reuse(&mut self, before: &RenderJob, job: &RenderJob) -> bool {
         if self.hierarchy.is_none() || !job.shares_scene_with(before) {
             return false;
         }
-        let groups = Groups::of(job, &self.facts);
+        let groups = Groups::of(job, &self.overlaps);
         if !groups.share_hierarchy(&self.groups) {
             return false;
         }
@@ -233,12 +233,12 @@ impl<R: Real> PreparedScene<R> {
         self.camera = CameraTable::new(job.camera(), settings.width, settings.height, groups.origin);
         self.settings = settings;
         self.hierarchy_source = HierarchySource::Kept;
-        self.see(job, groups);
+        self.set_view(job, groups);
         true
     }
 
     /// Sets everything that depends on the eye's position.
-    fn see(&mut self, job: &RenderJob, groups: Groups) {
+    fn set_view(&mut self, job: &RenderJob, groups: Groups) {
         let scene = job.scene();
         let listed = self.opaque.len() + self.two_root.len();
         self.records.truncate(listed);
@@ -253,7 +253,7 @@ impl<R: Real> PreparedScene<R> {
             self.records.push(RecordColumns::default());
         }
         let is_exact = job.rules().surface == SurfaceRule::Exact;
-        self.warning = self.facts.warning(job, groups.origin).filter(|_| is_exact);
+        self.warning = self.overlaps.warning(job, groups.origin).filter(|_| is_exact);
         self.groups = groups;
         self.features = Features::of(job, &self.sorted());
         #[cfg(test)]

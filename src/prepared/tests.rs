@@ -180,7 +180,7 @@ fn scene_following_camera_is_valid() {
     camera.look_from.x += 0.25;
     let moved = before.seen_by(camera, *before.settings()).expect("valid");
     let mut prepared = PreparedScene::<f32>::new(&before);
-    assert!(prepared.follow(&before, &moved));
+    assert!(prepared.try_reuse(&before, &moved));
     assert_eq!(prepared.validate(&moved), Ok(()));
 }
 

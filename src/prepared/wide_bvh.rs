@@ -120,11 +120,11 @@ impl WideBvh {
             let first = nodes.len();
             let children: Vec<usize> = (0..8).filter(|child| !node.is_child_empty(*child)).collect();
             nodes.resize(first + children.len(), [[0; 4]; NODE_ROWS]);
-            let mut boxes = [Child::Empty; 8];
+            let mut places = [None; 8];
             for (child, place) in children.into_iter().zip(first..) {
+                places[child] = Some(place);
                 if !node.is_leaf(child) {
                     open.push((node.child_node_index(child), place, level + 1));
-                    boxes[child] = Child::Node(place);
                     continue;
                 }
                 let (leaf, _) = node.child_primitives(child);
@@ -140,39 +140,23 @@ impl WideBvh {
                 nodes.extend(shifted);
                 order.extend(tree.order);
                 depth = depth.max(level + tree.depth);
-                boxes[child] = Child::Node(place);
             }
             // All its children are nodes now.
-            for child in (0..8).filter(|child| boxes[*child] != Child::Empty) {
+            for child in (0..8).filter(|child| places[*child].is_some()) {
                 node.imask |= 1 << child;
                 node.child_meta[child] = 0b0010_0000 | (24 + child as u8);
             }
             (node.child_base_idx, node.primitive_base_idx) = (first as u32, 0);
-            placed.push((place, node, boxes));
+            placed.push((place, node, places));
         }
         // Parents have been placed before their children.
         for (place, node, children) in placed.into_iter().rev() {
-            let around = children.map(|child| match child {
-                Child::Empty => Aabb::empty(),
-                Child::Node(place) => united(&boxes_of(&nodes[place])),
-            });
+            let around = children
+                .map(|child| child.map_or_else(Aabb::empty, |place: usize| united(&boxes_of(&nodes[place]))));
             nodes[place] = rows_of(&node, &around);
         }
         WideBvh { nodes, order, depth }
     }
-
-    /// Nodes on the longest path from the root to a leaf.
-    pub fn depth(&self) -> usize {
-        self.depth
-    }
-}
-
-/// A child of a node above the regions.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Child {
-    Empty,
-    /// Its place.
-    Node(usize),
 }
 
 /// A node as the GPU reads it, with the boxes of its children.

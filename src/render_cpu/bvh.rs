@@ -26,13 +26,12 @@ pub struct Slabs<L: Lanes> {
 pub fn slabs_of<L: Lanes>(l: L, rays: &Rays<L>, extent: L::Real) -> Slabs<L> {
     let o = rays.origin;
     let size = o.x.abs().max(o.y.abs()).max(o.z.abs().max(l.splat(extent)));
-    let margin = size * l.constant(BOX_MARGIN);
+    let margin = V3::splat(size * l.constant(BOX_MARGIN));
     let inverse = V3 {
         x: inverse_of(l, rays.direction.x),
         y: inverse_of(l, rays.direction.y),
         z: inverse_of(l, rays.direction.z),
     };
-    let margin = V3 { x: margin, y: margin, z: margin };
     Slabs { inverse, low: (o + margin).times(inverse), high: (o - margin).times(inverse) }
 }
 

@@ -22,16 +22,16 @@ pub fn screen<L: Lanes>(l: L, camera: &CameraTable<Wide<L::Real>>, x: L::F, y: L
     ]
 }
 
-/// Rays from the eye through the point `jitter` (each component in `[0, 1)`) of the pixel at `screen`.
+/// Rays from the eye through the point `jitter` (each component in `[0, 1)`) of the pixel at `corner`.
 #[inline(always)]
 pub fn pinhole_ray<L: Lanes>(
     l: L,
     camera: &CameraTable<Wide<L::Real>>,
-    screen: [L::F; 2],
+    corner: [L::F; 2],
     jitter: [L::F; 2],
 ) -> CameraRays<L> {
-    let sx = jitter[0].mul_add(l.load(&camera.scale_x), screen[0]);
-    let sy = jitter[1].mul_add(l.load(&camera.scale_y), screen[1]);
+    let sx = jitter[0].mul_add(l.load(&camera.scale_x), corner[0]);
+    let sy = jitter[1].mul_add(l.load(&camera.scale_y), corner[1]);
     CameraRays { origin: load3(l, &camera.eye), direction: through(l, camera, sx, sy) }
 }
 
@@ -40,13 +40,13 @@ pub fn pinhole_ray<L: Lanes>(
 pub fn lens_ray<L: Lanes>(
     l: L,
     camera: &CameraTable<Wide<L::Real>>,
-    screen: [L::F; 2],
+    corner: [L::F; 2],
     jitter: [L::F; 2],
     on_lens: [L::F; 2],
 ) -> CameraRays<L> {
     let (tau, radius) = (l.load(&camera.tau), l.load(&camera.lens_radius));
-    let sx = jitter[0].mul_add(l.load(&camera.scale_x), screen[0]);
-    let sy = jitter[1].mul_add(l.load(&camera.scale_y), screen[1]);
+    let sx = jitter[0].mul_add(l.load(&camera.scale_x), corner[0]);
+    let sy = jitter[1].mul_add(l.load(&camera.scale_y), corner[1]);
     let direction = through(l, camera, tau.neg_mul_add(on_lens[0], sx), tau.neg_mul_add(on_lens[1], sy));
     let origin = load3(l, &camera.u).mul_add(radius * on_lens[0], load3(l, &camera.eye));
     CameraRays { origin: load3(l, &camera.v).mul_add(radius * on_lens[1], origin), direction }

@@ -1,5 +1,6 @@
 //! Instruction set levels and the lane counts that each supports.
 
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 use fearless_simd::Level;
 use std::fmt;
 
@@ -36,23 +37,19 @@ impl Isa {
 
     /// The levels that this processor supports, from least to most capable.
     pub fn available() -> Vec<Isa> {
-        let mut levels = vec![Isa::Portable];
-        let level = Level::new();
-        #[cfg(target_arch = "x86_64")]
-        {
-            let found = [
-                (level.as_sse4_2().is_some(), Isa::Sse42),
-                (level.as_avx2().is_some(), Isa::Avx2),
-                (level.as_avx512().is_some(), Isa::Avx512),
-            ];
-            levels.extend(found.iter().filter(|(has, _)| *has).map(|(_, isa)| *isa));
-        }
-        #[cfg(target_arch = "aarch64")]
-        if level.as_neon().is_some() {
-            levels.push(Isa::Neon);
-        }
-        let _ = level;
-        levels
+        let is_available = |isa: &Isa| match isa {
+            Isa::Portable => true,
+            #[cfg(target_arch = "x86_64")]
+            Isa::Sse42 => Level::new().as_sse4_2().is_some(),
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx2 => Level::new().as_avx2().is_some(),
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx512 => Level::new().as_avx512().is_some(),
+            #[cfg(target_arch = "aarch64")]
+            Isa::Neon => Level::new().as_neon().is_some(),
+            _ => false,
+        };
+        Isa::ALL.into_iter().filter(is_available).collect()
     }
 
     /// Lane counts that have kernels at this level: 1, those that fit a register, and twice those.

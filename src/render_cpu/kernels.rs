@@ -45,9 +45,11 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
     let offered = offered(isa, lanes, needed);
     Some(match (isa, lanes) {
         (Isa::Portable, 1) if offered == GLASS => {
-            Box::new(|prepared, work| trace::<_, GLASS>(Scalar::<false>, prepared, work))
+            Box::new(|broadcast, work| trace::<_, GLASS>(Scalar::<false>, broadcast, work))
         }
-        (Isa::Portable, 1) => Box::new(|prepared, work| trace::<_, GENERAL>(Scalar::<false>, prepared, work)),
+        (Isa::Portable, 1) => {
+            Box::new(|broadcast, work| trace::<_, GENERAL>(Scalar::<false>, broadcast, work))
+        }
         #[cfg(target_arch = "x86_64")]
         (Isa::Sse42, _) => {
             let simd = level.as_sse4_2()?;
@@ -90,7 +92,7 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
 
 /// Returns the reference's kernel.
 pub fn reference_kernel() -> Kernel<f64> {
-    Box::new(|prepared, work| trace::<_, GENERAL>(Reference, prepared, work))
+    Box::new(|broadcast, work| trace::<_, GENERAL>(Reference, broadcast, work))
 }
 
 /// The general variant and the one with glass.
@@ -112,10 +114,10 @@ fn specialised<S: Simd, L: Lanes<Real = f32>>(simd: S, lanes: L, offered: u32) -
 
 /// The path loop, compiled for the instructions of `simd`.
 fn compiled<S: Simd, L: Lanes<Real = f32>, const PARTS: u32>(simd: S, lanes: L) -> Kernel<f32> {
-    Box::new(move |prepared, work| {
+    Box::new(move |broadcast, work| {
         simd.vectorize(
             #[inline(always)]
-            || trace::<_, PARTS>(lanes, prepared, work),
+            || trace::<_, PARTS>(lanes, broadcast, work),
         )
     })
 }

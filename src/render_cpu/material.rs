@@ -81,8 +81,7 @@ impl<L: Lanes> Scattered<L> {
     #[inline(always)]
     pub fn unused(l: L) -> Self {
         let zero = l.constant(0.0);
-        let direction = V3 { x: zero, y: zero, z: zero };
-        Scattered { direction, refracts: l.mask(0), is_metal: l.mask(0), ratio: zero }
+        Scattered { direction: V3::splat(zero), refracts: l.mask(0), is_metal: l.mask(0), ratio: zero }
     }
 }
 
@@ -129,10 +128,10 @@ pub fn scatter<L: Lanes, const GLASS: bool>(
     let reflects = material.reflects();
     let mut along = reflects.select(one, zero);
     let mut across = reflects.select(cosine + cosine, one);
-    let mut refracts = l.mask(0);
-    let mut ratio = one;
+    let (mut refracts, mut is_metal, mut ratio) = (l.mask(0), reflects, one);
     let is_glass = material.is_glass(l);
     if GLASS && !is_idle::<L>(is_glass) {
+        is_metal = reflects & !is_glass;
         ratio = front_face.select(material.inverse_index, material.refraction_index);
         // Squared sine of the refraction angle: above 1, Snell's law has no solution.
         let refracted_sine2 = ratio * ratio * sine2;
@@ -148,12 +147,7 @@ pub fn scatter<L: Lanes, const GLASS: bool>(
         across = refracts.select(ratio.mul_add(cosine, -inner_cosine), across);
     }
     let smooth = direction.mul_add(along, normal.scale(across));
-    Scattered {
-        direction: unit.mul_add(material.weight.abs(), smooth),
-        refracts,
-        is_metal: if GLASS { reflects & !is_glass } else { reflects },
-        ratio,
-    }
+    Scattered { direction: unit.mul_add(material.weight.abs(), smooth), refracts, is_metal, ratio }
 }
 
 /// The refracted direction, not normalised, from the part of the incoming direction `across` the normal. This form

@@ -8,6 +8,7 @@ use super::work::{RefillBlock, RefillOrder, TileStats, Work};
 use crate::film::{Film, PixelSum};
 use crate::job::render::panic_text;
 use crate::kernel::Real;
+use crate::prepared::PreparedScene;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -52,7 +53,7 @@ impl<'a> StopRequest<'a> {
 
     /// Whether the next of `tile_count` tiles is left out. To withdraw a tile, it is traced again, so a pass is given up if
     /// fewer than half of its tiles have begun.
-    fn leaves_out(&self, tile_count: usize) -> bool {
+    fn skips_next(&self, tile_count: usize) -> bool {
         let begun = self.tiles_begun.fetch_add(1, Ordering::Relaxed);
         self.requested.load(Ordering::Relaxed) && *self.is_given_up.get_or_init(|| 2 * begun < tile_count)
     }
@@ -108,8 +109,8 @@ impl PassTracer<'_> {
     /// Adds a pass to the film's sums. Returns the outcome of each tile, row by row.
     pub fn trace(&self, pass: Pass, film: &mut Film) -> Vec<TracedTile> {
         match self.prepared {
-            Prepared::Single(prepared, kernel) => self.trace_with(prepared, kernel, pass, film),
-            Prepared::Double(prepared, kernel) => self.trace_with(prepared, kernel, pass, film),
+            Prepared::Single(broadcast, kernel) => self.trace_with(broadcast, kernel, pass, film),
+            Prepared::Double(broadcast, kernel) => self.trace_with(broadcast, kernel, pass, film),
         }
     }
 
@@ -135,13 +136,13 @@ impl PassTracer<'_> {
 
     fn trace_with<R: Real>(
         &self,
-        prepared: &BroadcastScene<R>,
+        broadcast: &BroadcastScene<R>,
         kernel: &Kernel<R>,
         pass: Pass,
         film: &mut Film,
     ) -> Vec<TracedTile> {
-        let settings = &prepared.prepared.settings;
-        let blocks = RefillBlock::of_range(pass.range.clone(), settings, prepared.prepared.block_limit);
+        let PreparedScene { settings, block_limit, .. } = &broadcast.prepared;
+        let blocks = RefillBlock::of_range(pass.range.clone(), settings, *block_limit);
         let is_first = film.sample_count() == 0 && matches!(pass.purpose, Purpose::Add);
         let mut tiles = tiles(film.halves_mut(), settings.width, pass.side);
         if let Purpose::Estimate { one_in } = pass.purpose {
@@ -173,12 +174,12 @@ impl PassTracer<'_> {
                 Purpose::Withdraw(added) => work.withdrawing(added[index]),
                 Purpose::Estimate { .. } => work.withdrawing(0),
             };
-            if pass.cancel.load(Ordering::Relaxed) || pass.stop.leaves_out(tile_count) {
+            if pass.cancel.load(Ordering::Relaxed) || pass.stop.skips_next(tile_count) {
                 return traced;
             }
             let begin = Instant::now();
             // After a panic `work` is still consistent: the sums that it counts are in the film.
-            match catch_unwind(AssertUnwindSafe(|| kernel(prepared, &mut work))) {
+            match catch_unwind(AssertUnwindSafe(|| kernel(broadcast, &mut work))) {
                 Ok(stats) => traced.stats = stats,
                 Err(payload) => traced.panic = Some(panic_text(payload.as_ref()).to_owned()),
             }
@@ -195,7 +196,7 @@ impl PassTracer<'_> {
 }
 
 /// Describes the first tile that lacks samples, and why; `None` if the pass is complete.
-pub(super) fn what_is_missing(traced: &[TracedTile], side: u32, width: u32) -> Option<String> {
+pub(super) fn describe_missing(traced: &[TracedTile], side: u32, width: u32) -> Option<String> {
     let index = traced.iter().position(|tile| !tile.is_whole())?;
     let TracedTile { finished, expected, panic, .. } = &traced[index];
     let columns = width.div_ceil(side) as usize;
@@ -230,11 +231,11 @@ mod tests {
         for (begun, is_given_up) in [(0, true), (1, true), (2, true), (3, false), (4, false)] {
             let requested = AtomicBool::new(false);
             let stop = StopRequest::when(&requested);
-            (0..begun).for_each(|_| assert!(!stop.leaves_out(5)));
+            (0..begun).for_each(|_| assert!(!stop.skips_next(5)));
             assert!(!stop.is_given_up(), "no stop was requested");
             requested.store(true, Ordering::Relaxed);
             // The decision does not change when more tiles have been left out or begun.
-            (begun..5).for_each(|_| assert_eq!(stop.leaves_out(5), is_given_up, "after {begun} of 5"));
+            (begun..5).for_each(|_| assert_eq!(stop.skips_next(5), is_given_up, "after {begun} of 5"));
             assert_eq!(stop.is_given_up(), is_given_up, "after {begun} of 5");
         }
     }
@@ -245,11 +246,11 @@ mod tests {
         let tile = |finished| TracedTile { stats, finished, expected: 9, panic: None, took };
         // Tiles of 8 pixels in a picture of 20: three columns.
         let mut traced: Vec<TracedTile> = [9, 9, 9, 9, 4, 9].map(tile).into();
-        let reason = what_is_missing(&traced, 8, 20).expect("samples are missing");
+        let reason = describe_missing(&traced, 8, 20).expect("samples are missing");
         assert!(reason.contains("of 9 blocks") && reason.contains("pixel (8, 8) 4"), "{reason}");
-        assert_eq!(what_is_missing(&traced[..4], 8, 20), None);
+        assert_eq!(describe_missing(&traced[..4], 8, 20), None);
         traced[2].panic = Some("a slip".to_owned());
-        let reason = what_is_missing(&traced, 8, 20).expect("a panic");
+        let reason = describe_missing(&traced, 8, 20).expect("a panic");
         assert!(
             reason.starts_with("it panicked: a slip; of 9") && reason.contains("pixel (16, 0)"),
             "{reason}"

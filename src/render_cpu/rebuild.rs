@@ -88,7 +88,7 @@ impl Rebuild {
             self.is_settled |= job_then.scene() == job.scene();
             return None;
         };
-        if self.is_settled || !prepared.follow(&job_then, job) {
+        if self.is_settled || !prepared.try_reuse(&job_then, job) {
             return None;
         }
         self.is_settled = true;

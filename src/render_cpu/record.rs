@@ -23,18 +23,18 @@ pub fn record_path(job: &RenderJob, pixel: [u32; 2], index: u64, isa: Option<Isa
 /// Records many paths of one job, in turn or from several threads.
 pub struct PathRecorder {
     job: RenderJob,
-    prepared: BroadcastScene<f32>,
+    broadcast: BroadcastScene<f32>,
     recorder: Recorder,
 }
 
 impl PathRecorder {
     /// Creates a recorder for paths as `isa` traces them. It reuses what it can of the `earlier` job's recorder.
     pub fn new(job: &RenderJob, isa: Isa, earlier: Option<PathRecorder>) -> Self {
-        let old = earlier.map(|earlier| (earlier.prepared.prepared, earlier.job));
+        let old = earlier.map(|earlier| (earlier.broadcast.prepared, earlier.job));
         // Never cancelled.
         let renewed = PreparedScene::renewed(&AtomicBool::new(false), old, job);
-        let prepared = BroadcastScene::new(renewed.unwrap_or_else(|| PreparedScene::new(job)));
-        PathRecorder { prepared, recorder: recorder(isa), job: job.clone() }
+        let broadcast = BroadcastScene::new(renewed.unwrap_or_else(|| PreparedScene::new(job)));
+        PathRecorder { broadcast, recorder: recorder(isa), job: job.clone() }
     }
 
     /// The job whose paths are recorded.
@@ -44,7 +44,7 @@ impl PathRecorder {
 
     /// Records sample `index` of a pixel, which must be inside the picture.
     pub fn record(&self, pixel: [u32; 2], index: u64) -> PathRecord {
-        (self.recorder)(&self.prepared, pixel, index)
+        (self.recorder)(&self.broadcast, pixel, index)
     }
 }
 
@@ -59,13 +59,13 @@ fn recorder(isa: Isa) -> Recorder {
     #[cfg(target_arch = "aarch64")]
     let fused = level.as_neon();
     match fused {
-        Some(simd) if isa.is_fused() => Box::new(move |prepared, pixel, index| {
+        Some(simd) if isa.is_fused() => Box::new(move |broadcast, pixel, index| {
             simd.vectorize(
                 #[inline(always)]
-                || record(Scalar::<true>, prepared, pixel, index),
+                || record(Scalar::<true>, broadcast, pixel, index),
             )
         }),
-        _ => Box::new(|prepared, pixel, index| record(Scalar::<false>, prepared, pixel, index)),
+        _ => Box::new(|broadcast, pixel, index| record(Scalar::<false>, broadcast, pixel, index)),
     }
 }
 

@@ -4,7 +4,7 @@ use super::broadcast::BroadcastScene;
 use super::isa::Isa;
 use super::kernels;
 use super::options::{CpuError, CpuOptions};
-use super::pass::{Pass, PassTracer, Prepared, Purpose, StopRequest, TracedTile, what_is_missing};
+use super::pass::{Pass, PassTracer, Prepared, Purpose, StopRequest, TracedTile, describe_missing};
 use super::priority::give_way;
 use super::rebuild::Rebuild;
 use super::tiles::tile_side;
@@ -184,7 +184,7 @@ impl Renderer for CpuRenderer {
         if cancel.load(Ordering::Relaxed) {
             return Err(RenderError::Cancelled);
         }
-        if let Some(reason) = what_is_missing(&traced, side, film.width()) {
+        if let Some(reason) = describe_missing(&traced, side, film.width()) {
             let backend = self.info().name;
             let is_withdrawn = tracer.withdraw(pass, &traced, film);
             return match (is_withdrawn, stop.is_given_up()) {

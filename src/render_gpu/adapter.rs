@@ -210,7 +210,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn only_software_counts_the_turns_of_all_threads_in_step() {
+    fn only_software_counts_the_iterations_of_all_threads_in_step() {
         // Registers of the processor hold at least 8 threads, and no more than 64 are known.
         for (subgroup_size, expected) in [(0, 8), (4, 8), (8, 8), (16, 16), (64, 64), (128, 64)] {
             let software = AdapterInfo { subgroup_size, ..adapter("software", "Vulkan", true, None) };

@@ -35,8 +35,8 @@ pub struct Layouts {
     pub job: wgpu::BindGroupLayout,
     /// Group 1: the dispatch.
     pub dispatch: wgpu::BindGroupLayout,
-    /// Group 2: input and output words.
-    pub words: wgpu::BindGroupLayout,
+    /// Group 2: scratch words.
+    pub scratch: wgpu::BindGroupLayout,
     /// The pipeline layout of all three groups.
     pub pipeline: wgpu::PipelineLayout,
 }
@@ -66,13 +66,13 @@ impl Layouts {
         let write = wgpu::BufferBindingType::Storage { read_only: false };
         let job = group("job", &[uniform, read, read, read, read]);
         let dispatch = group("dispatch", &[uniform, read, write, write]);
-        let words = group("words", &[write]);
+        let scratch = group("scratch", &[write]);
         let pipeline = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("weekender"),
-            bind_group_layouts: &[Some(&job), Some(&dispatch), Some(&words)],
+            bind_group_layouts: &[Some(&job), Some(&dispatch), Some(&scratch)],
             immediate_size: 0,
         });
-        Layouts { job, dispatch, words, pipeline }
+        Layouts { job, dispatch, scratch, pipeline }
     }
 }
 
@@ -106,7 +106,7 @@ struct Silence {
 }
 
 /// How often a wait for the device checks whether the result is still wanted.
-const LOOK: Duration = Duration::from_millis(20);
+const POLL_INTERVAL: Duration = Duration::from_millis(20);
 
 /// How long the device does not respond during an injected fault.
 const INJECTED_SILENCE: Duration = Duration::from_secs(10);
@@ -285,10 +285,12 @@ impl Gpu {
     fn poll(&self, submission: &wgpu::SubmissionIndex) -> Result<wgpu::PollStatus, wgpu::PollError> {
         let simulated_until = self.silence().simulated_until;
         if simulated_until.is_some_and(|until| Instant::now() < until) {
-            std::thread::sleep(LOOK);
+            std::thread::sleep(POLL_INTERVAL);
             return Err(wgpu::PollError::Timeout);
         }
-        self.device
-            .poll(wgpu::PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(LOOK) })
+        self.device.poll(wgpu::PollType::Wait {
+            submission_index: Some(submission.clone()),
+            timeout: Some(POLL_INTERVAL),
+        })
     }
 }

@@ -99,7 +99,7 @@ impl Slot {
 fn suspended_storage(gpu: &Gpu, size: u64) -> Result<(wgpu::Buffer, wgpu::BindGroup), String> {
     let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
     let suspended = gpu.buffer("suspended paths", size, usage)?;
-    let group = gpu.bind(&gpu.layouts.words, &[&suspended]);
+    let group = gpu.bind(&gpu.layouts.scratch, &[&suspended]);
     Ok((suspended, group))
 }
 
@@ -181,7 +181,12 @@ impl Dispatches {
     ///
     /// # Errors
     /// If the device runs out of memory.
-    pub(super) fn make_room(&mut self, gpu: &Gpu, threads: u64, binding_limit: u64) -> Result<(), String> {
+    pub(super) fn reserve_suspended(
+        &mut self,
+        gpu: &Gpu,
+        threads: u64,
+        binding_limit: u64,
+    ) -> Result<(), String> {
         let size = threads.min(THREAD_LIMIT).min(binding_limit / SUSPENDED_SIZE) * SUSPENDED_SIZE;
         for slot in &mut self.slots {
             if slot.suspended.size() < size {

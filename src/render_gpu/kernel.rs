@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How often a wait for a kernel checks whether the kernel is still wanted.
-const LOOK: Duration = Duration::from_millis(2);
+const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
 /// How long a driver may compile. The slowest known one that finishes takes some seconds.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -70,7 +70,7 @@ impl Slot {
         loop {
             match self {
                 Slot::Done(kernel) => return kernel.clone().map_err(failed),
-                Slot::Compiling(kernel, begin) => match kernel.recv_timeout(LOOK) {
+                Slot::Compiling(kernel, begin) => match kernel.recv_timeout(POLL_INTERVAL) {
                     Ok(kernel) => *self = Slot::Done(kernel),
                     Err(RecvTimeoutError::Disconnected) => {
                         *self = Slot::Done(Err("the kernel's compiler ended unexpectedly".to_owned()));

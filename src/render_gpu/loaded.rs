@@ -39,33 +39,38 @@ pub(super) struct SceneOnDevice {
 
 impl GpuRenderer {
     /// Takes what is loaded, or loads what `job` needs.
-    pub(super) fn ready(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<Loaded, RenderError> {
+    pub(super) fn take_loaded(
+        &mut self,
+        job: &RenderJob,
+        cancel: &AtomicBool,
+    ) -> Result<Loaded, RenderError> {
         match self.loaded.take() {
             Some(loaded) if loaded.job == *job => Ok(loaded),
             old => {
                 self.dispatches.discard();
                 self.inject(InjectionPoint::Prepare, self.preparations);
                 self.preparations += 1;
-                self.built(job, old, cancel)
+                self.load(job, old, cancel)
             }
         }
     }
 
-    fn built(
+    fn load(
         &mut self,
         job: &RenderJob,
         old: Option<Loaded>,
         cancel: &AtomicBool,
     ) -> Result<Loaded, RenderError> {
         self.gpu.faults.check().map_err(failed)?;
-        let (mut seen, old_film) =
+        let (mut old_scene, old_film) =
             old.map_or((None, None), |old| (Some((old.scene, old.job)), Some(old.film)));
-        let follows = seen.as_mut().is_some_and(|(scene, before)| scene.prepared.follow(before, job));
-        let scene = match seen {
-            Some((scene, _)) if follows => {
+        let is_reused =
+            old_scene.as_mut().is_some_and(|(scene, before)| scene.prepared.try_reuse(before, job));
+        let scene = match old_scene {
+            Some((scene, _)) if is_reused => {
                 let data = GpuJob::new(&scene.prepared, scene.node_count);
                 self.gpu.queue.write_buffer(&scene.job_buffer, 0, bytemuck::cast_slice(&words_of(&[data])));
-                self.renew_anchored(&scene);
+                self.upload_anchored(&scene);
                 scene
             }
             other => {
@@ -79,7 +84,7 @@ impl GpuRenderer {
         self.kernels.begin(&self.gpu, (EntryPoint::PathTrace, features));
         self.messages.extend(scene.prepared.warning().cloned());
         let film = self.film_buffers(job, old_film).map_err(failed)?;
-        self.make_room(job).map_err(failed)?;
+        self.reserve_suspended(job).map_err(failed)?;
         let kernel = self.kernels.get(&self.gpu, (EntryPoint::PathTrace, features), cancel)?;
         self.gpu.faults.check().map_err(failed)?;
         if self.dispatches.is_new(&features) {
@@ -89,7 +94,7 @@ impl GpuRenderer {
     }
 
     /// The anchors of spheres depend on the position of the eye.
-    fn renew_anchored(&self, scene: &SceneOnDevice) {
+    fn upload_anchored(&self, scene: &SceneOnDevice) {
         let prepared = &scene.prepared;
         let anchored = words_of(&prepared.anchored);
         let first = prepared.opaque.len() + prepared.two_root.len();
@@ -115,7 +120,7 @@ impl GpuRenderer {
         });
         let mut prepared = made.ok_or(RenderError::Cancelled)?;
         let data = SceneData::new(&mut prepared);
-        self.copied(prepared, data).map_err(failed)
+        self.upload(prepared, data).map_err(failed)
     }
 
     fn features(&self, prepared: &PreparedScene<f32>) -> Features {
@@ -137,12 +142,12 @@ impl GpuRenderer {
     }
 
     /// Allocates storage for the paths that the threads of a picture may suspend.
-    fn make_room(&mut self, job: &RenderJob) -> Result<(), String> {
+    fn reserve_suspended(&mut self, job: &RenderJob) -> Result<(), String> {
         let (width, height) = (job.settings().width, job.settings().height);
         let [tile_width, tile_height] = tile_size(width, height);
         let tiles = u64::from(width.div_ceil(tile_width)) * u64::from(height.div_ceil(tile_height));
         let limit = self.binding_limit();
-        self.dispatches.make_room(&self.gpu, tiles * u64::from(WORKGROUP_SIZE), limit)
+        self.dispatches.reserve_suspended(&self.gpu, tiles * u64::from(WORKGROUP_SIZE), limit)
     }
 
     /// Size limit of a buffer binding in a shader, in bytes.
@@ -156,7 +161,7 @@ impl GpuRenderer {
         self.options.film_limit.map_or(limit, |wanted| wanted.min(limit))
     }
 
-    fn copied(&self, prepared: PreparedScene<f32>, scene: SceneData) -> Result<SceneOnDevice, String> {
+    fn upload(&self, prepared: PreparedScene<f32>, scene: SceneData) -> Result<SceneOnDevice, String> {
         let gpu = &self.gpu;
         let limit = self.binding_limit();
         let contents = scene.buffers(&prepared);

@@ -5,7 +5,6 @@
 //! film. Sample indices, random numbers and fixed-point sums match the CPU's to the bit.
 
 mod adapter;
-mod add_sums;
 mod device;
 mod dispatches;
 mod film_buffers;
@@ -18,7 +17,6 @@ mod record;
 mod scene;
 mod schedule;
 pub mod shader_source;
-mod small_programs;
 mod trace;
 
 pub use adapter::{AdapterInfo, BUSY_THREADS_OF_SOFTWARE, SOFTWARE_THREADS_IN_STEP, adapters};
@@ -109,7 +107,7 @@ impl GpuRenderer {
         cancel: &AtomicBool,
         work: impl FnOnce(&mut Self, &mut Loaded) -> Result<T, RenderError>,
     ) -> Result<T, RenderError> {
-        let loaded = self.ready(job, cancel)?;
+        let loaded = self.take_loaded(job, cancel)?;
         self.work_on(loaded, work)
     }
 
@@ -214,11 +212,8 @@ impl Renderer for GpuRenderer {
         control: &Control,
     ) -> Result<Outcome, RenderError> {
         let stats = self.with_loaded(job, control.cancel, |this, loaded| {
-            match this.trace(loaded, &range, film, control) {
-                Err(Incomplete::Short(reason)) => this.retrace(loaded, reason, range, film, control.cancel),
-                Err(Incomplete::Failed(error)) => Err(error),
-                Ok(stats) => Ok(stats),
-            }
+            let traced = this.trace(loaded, &range, film, control);
+            this.completed(loaded, traced, range, film, control.cancel)
         })?;
         Ok(stats.into())
     }
@@ -234,12 +229,9 @@ impl Renderer for GpuRenderer {
 
     fn finish(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
         let Some(loaded) = self.loaded.take() else { return Ok(Stats::default()) };
-        self.work_on(loaded, |this, loaded| match this.finish_all(loaded, film) {
-            Err(Incomplete::Short(reason)) => {
-                this.retrace(loaded, reason, 0..0, film, &AtomicBool::new(false))
-            }
-            Err(Incomplete::Failed(error)) => Err(error),
-            Ok(stats) => Ok(stats),
+        self.work_on(loaded, |this, loaded| {
+            let finished = this.finish_all(loaded, film);
+            this.completed(loaded, finished, 0..0, film, &AtomicBool::new(false))
         })
     }
 }

@@ -38,8 +38,8 @@ pub enum InjectionPoint {
     /// Before a dispatch is submitted.
     #[default]
     Dispatch,
-    /// Before a film is sent for.
-    Fetch,
+    /// Before a readback of the film is requested.
+    Readback,
 }
 
 /// A fault that is injected on purpose, to test that a render survives it.

@@ -6,23 +6,6 @@ use std::mem::offset_of;
 use std::sync::mpsc::{self, Receiver};
 use std::time::Duration;
 
-/// Reads the first `count` words of `from` after all submitted work is done.
-///
-/// # Errors
-/// The device's error.
-pub fn words(gpu: &Gpu, from: &wgpu::Buffer, count: usize) -> Result<Vec<u32>, String> {
-    let size = count as u64 * 4;
-    let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
-    let staging = gpu.buffer("words, read", size, usage)?;
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    encoder.copy_buffer_to_buffer(from, 0, &staging, 0, size);
-    let submission = gpu.queue.submit([encoder.finish()]);
-    let mapping = request_mapping(&staging);
-    gpu.wait_unless(&submission, None)?;
-    let view = view(&staging, &mapping)?;
-    Ok(bytemuck::pod_collect_to_vec(&view[..size as usize]))
-}
-
 /// Maps a staging buffer, which becomes available once the submitted work is done.
 pub fn request_mapping(staging: &wgpu::Buffer) -> Mapping {
     let (sender, receiver) = mpsc::channel();

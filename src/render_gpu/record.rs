@@ -1,15 +1,103 @@
-//! Reads a path that the device recorded.
+//! Records one path on the device, and reads it.
 //!
 //! On the device: shaders/record.wgsl
 
+use super::dispatches::stuck;
+use super::film_buffers::FilmBuffers;
+use super::layout::GpuDispatch;
+use super::loaded::SceneOnDevice;
+use super::readback::{request_mapping, view};
+use super::schedule::Blocks;
+use super::shader_source::EntryPoint;
+use super::{GpuRenderer, ITERATION_LIMIT, failed};
 use crate::film::PixelSum;
+use crate::job::render::{RenderError, RenderJob};
 use crate::kernel::path_record::{PathRecord, RecordedHit, RecordedRay};
 use crate::kernel::{GpuRecordHead, GpuRecordedRay, GpuSuspendedPath, NONE, word_count};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
+use std::sync::atomic::AtomicBool;
+
+impl GpuRenderer {
+    /// Records sample `index` of pixel (`x`, `y`), which must be inside the picture, as the kernel of `job` traces it.
+    ///
+    /// # Errors
+    /// [`RenderError::Backend`].
+    pub fn record_path(
+        &mut self,
+        job: &RenderJob,
+        pixel: [u32; 2],
+        index: u64,
+    ) -> Result<PathRecord, RenderError> {
+        // Recording a path is quick.
+        let never = AtomicBool::new(false);
+        self.with_loaded(job, &never, |this, loaded| {
+            let key = (EntryPoint::PathRecord, loaded.features);
+            let kernel = this.kernels.get(&this.gpu, key, &never)?;
+            // Not the film that is being traced.
+            let settings = job.settings();
+            let film = FilmBuffers::new(&this.gpu, settings, this.film_limit()).map_err(failed)?;
+            let SceneOnDevice { prepared, scene_index, group, .. } = &loaded.scene;
+            let (blocks, _) = Blocks::of_range(index..index + 1, settings, prepared.block_limit).take(1);
+            let mut parameters = GpuDispatch {
+                block_count: blocks.len() as u32,
+                iteration_limit: ITERATION_LIMIT,
+                row_count: film.slabs[0].row_count,
+                first_suspended: first_suspended(settings.max_depth) as u32,
+                ..GpuDispatch::default()
+            };
+            let queue = &this.gpu.queue;
+            queue.write_buffer(&film.blocks, 0, bytemuck::cast_slice(&blocks));
+            let mut words = words_for(pixel, settings.max_depth);
+            let mut rays = 0;
+            loop {
+                queue.write_buffer(&film.parameters, 0, bytemuck::bytes_of(&parameters));
+                words = this.run(&kernel.pipeline, group, &film.slabs[0].group, &words).map_err(failed)?;
+                match is_suspended(&words, settings.max_depth, &mut rays) {
+                    Some(true) => parameters.resumes = 1,
+                    Some(false) => {
+                        return Ok(from_words(&words, settings.max_depth, scene_index, prepared.origin));
+                    }
+                    None => return Err(failed(stuck(1))),
+                }
+            }
+        })
+    }
+
+    /// Runs one workgroup of a kernel on `words` and returns the resulting words.
+    fn run(
+        &self,
+        pipeline: &wgpu::ComputePipeline,
+        scene: &wgpu::BindGroup,
+        film: &wgpu::BindGroup,
+        words: &[u32],
+    ) -> Result<Vec<u32>, String> {
+        use wgpu::BufferUsages as Usages;
+        let (gpu, size) = (&self.gpu, size_of_val(words) as u64);
+        let data = bytemuck::cast_slice(words);
+        let buffer = gpu.filled("scratch", data, Usages::STORAGE | Usages::COPY_SRC)?;
+        let staging = gpu.buffer("scratch, read", size, Usages::MAP_READ | Usages::COPY_DST)?;
+        let group = gpu.bind(&gpu.layouts.scratch, &[&buffer]);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&Default::default());
+            pass.set_pipeline(pipeline);
+            for (group, number) in [scene, film, &group].into_iter().zip(0..) {
+                pass.set_bind_group(number, group, &[]);
+            }
+            pass.dispatch_workgroups(1, 1, 1);
+        }
+        encoder.copy_buffer_to_buffer(&buffer, 0, &staging, 0, size);
+        let submission = gpu.queue.submit([encoder.finish()]);
+        let mapping = request_mapping(&staging);
+        gpu.wait_unless(&submission, None)?;
+        let view = view(&staging, &mapping)?;
+        Ok(bytemuck::pod_collect_to_vec(&view[..size as usize]))
+    }
+}
 
 /// Number of words before those of the suspended path.
-pub fn first_suspended(max_depth: u32) -> usize {
+fn first_suspended(max_depth: u32) -> usize {
     first_of_ray(max_depth as usize)
 }
 
@@ -18,7 +106,7 @@ fn first_of_ray(number: usize) -> usize {
 }
 
 /// The words for recording the path at `pixel`, including the shader's input.
-pub fn words_for([column, row]: [u32; 2], max_depth: u32) -> Vec<u32> {
+fn words_for([column, row]: [u32; 2], max_depth: u32) -> Vec<u32> {
     let mut words = vec![0; first_suspended(max_depth) + word_count::<GpuSuspendedPath>()];
     let head = GpuRecordHead { column, row, ..GpuRecordHead::default() };
     words[..word_count::<GpuRecordHead>()].copy_from_slice(bytemuck::cast_slice(&[head]));
@@ -27,7 +115,7 @@ pub fn words_for([column, row]: [u32; 2], max_depth: u32) -> Vec<u32> {
 
 /// Returns whether the path was suspended and the shader must resume it; `rays` becomes the number of rays recorded
 /// so far. Returns `None` if the path has not advanced since `rays` were recorded.
-pub fn is_suspended(words: &[u32], max_depth: u32, rays: &mut u32) -> Option<bool> {
+fn is_suspended(words: &[u32], max_depth: u32, rays: &mut u32) -> Option<bool> {
     if read::<GpuSuspendedPath>(words, first_suspended(max_depth)).state == 0 {
         return Some(false);
     }
@@ -37,7 +125,7 @@ pub fn is_suspended(words: &[u32], max_depth: u32, rays: &mut u32) -> Option<boo
 
 /// Decodes the path from the words. `scene_index` maps a sphere's number to its index in the scene; positions are
 /// relative to `origin`.
-pub fn from_words(words: &[u32], max_depth: u32, scene_index: &[u32], origin: DVec3) -> PathRecord {
+fn from_words(words: &[u32], max_depth: u32, scene_index: &[u32], origin: DVec3) -> PathRecord {
     let head: GpuRecordHead = read(words, 0);
     let count = head.ray_count.min(max_depth) as usize;
     let rays: Vec<GpuRecordedRay> = (0..count).map(|number| read(words, first_of_ray(number))).collect();

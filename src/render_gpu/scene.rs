@@ -81,7 +81,7 @@ pub fn iterations_over_lists(features: &Features, prepared: &PreparedScene<f32>)
 /// The contents of a job's buffers, and what a host must know to run its kernel.
 #[derive(Clone, Debug)]
 pub struct Exported {
-    /// What the kernel must support. The host decides `suspends`, which depends on its limit on iterations.
+    /// The features that the kernel must support. The host decides `suspends`, which depends on its limit on iterations.
     pub features: Features,
     /// The bytes of the buffers of group 0, by binding: see shaders/bindings.wgsl.
     pub buffers: [Vec<u8>; 5],

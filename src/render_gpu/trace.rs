@@ -31,19 +31,20 @@ impl GpuRenderer {
         let tile = tile_size(settings.width, settings.height);
         let tile_pixels = u64::from(tile[0]) * u64::from(tile[1]);
         let mut stats = Stats::default();
+        let Loaded { features, .. } = *loaded;
+        let whole_samples = self.dispatches.whole_samples(&features, &loaded.scene.prepared);
+        let block_limit = loaded.scene.prepared.block_limit;
+        let block_limit = if features.suspends { block_limit.min(SHARED_BLOCK) } else { block_limit };
         for slab in 0..loaded.film.slabs.len() {
             let Slab { first_row, row_count, .. } = loaded.film.slabs[slab];
             let area = [settings.width, row_count];
-            let most = self.dispatches.whole_samples(&loaded.features, &loaded.scene.prepared);
-            let most = most.filter(|_| !loaded.features.suspends).unwrap_or(u64::MAX);
             let tiles = settings.width.div_ceil(tile[0]) * row_count.div_ceil(tile[1]);
-            let limit = loaded.scene.prepared.block_limit;
-            let limit = if loaded.features.suspends { limit.min(SHARED_BLOCK) } else { limit };
-            let mut left = Blocks::of_range(range.clone(), &settings, limit);
+            let mut left = Blocks::of_range(range.clone(), &settings, block_limit);
             loop {
-                let affordable = self.dispatches.budget(&loaded.features).paths();
+                let affordable = self.dispatches.budget(&features).paths();
                 let threads = (u64::from(tiles) * tile_pixels).min(self.gpu.adapter.busy_threads());
-                let samples = self.options.samples_per_dispatch.unwrap_or(affordable / threads).min(most);
+                let samples = self.options.samples_per_dispatch.unwrap_or(affordable / threads);
+                let samples = samples.min(whole_samples.unwrap_or(u64::MAX));
                 let (blocks, samples) = left.take(samples >> (CAUTION_SHIFT * self.dispatches.caution));
                 if blocks.is_empty() {
                     break;
@@ -55,7 +56,7 @@ impl GpuRenderer {
                         return Err(RenderError::Cancelled.into());
                     }
                     let slot = self.dispatches.free_slot(&self.gpu, cancel)?;
-                    let affordable = self.dispatches.budget(&loaded.features).paths();
+                    let affordable = self.dispatches.budget(&features).paths();
                     let tile_limit =
                         (affordable / (tile_pixels * samples).max(1)).min(self.dispatches.tile_limit());
                     let tile_count = evenly(tiles - first_tile, tile_limit);
@@ -63,13 +64,13 @@ impl GpuRenderer {
                         first_tile,
                         tile_count,
                         block_count: blocks.len() as u32,
-                        iteration_limit: self.dispatches.iteration_limit(&loaded.features),
+                        iteration_limit: self.dispatches.iteration_limit(&features),
                         first_row,
                         row_count,
                         ..GpuDispatch::default()
                     };
                     let dispatch = BoundDispatch {
-                        kernel: loaded.features,
+                        kernel: features,
                         pipeline: loaded.kernel.pipeline.clone(),
                         scene: loaded.scene.group.clone(),
                         film: loaded.film.slabs[slab].group.clone(),
@@ -105,7 +106,7 @@ impl GpuRenderer {
     /// Requests a readback of the film, after the dispatches in flight.
     pub(super) fn read_film_back(&mut self, loaded: &mut Loaded) -> Result<(), Incomplete> {
         if !loaded.film.is_reading_back() {
-            self.inject(InjectionPoint::Fetch, self.readbacks);
+            self.inject(InjectionPoint::Readback, self.readbacks);
             self.readbacks += 1;
             self.dispatches.drain(&self.gpu, None)?;
             loaded.film.request_readback(&self.gpu);
@@ -124,14 +125,15 @@ impl GpuRenderer {
         Ok(stats)
     }
 
-    /// Traces the samples on the device and `range` again because samples were missing, in smaller dispatches.
+    /// Returns the outcome of tracing `range`. If samples are missing, traces those on the device and `range` again, in
+    /// smaller dispatches.
     ///
     /// # Errors
     /// If samples are still missing; the film is then unchanged.
-    pub(super) fn retrace(
+    pub(super) fn completed(
         &mut self,
         loaded: &mut Loaded,
-        mut shortfall: String,
+        mut outcome: Result<Stats, Incomplete>,
         range: Range<u64>,
         film: &mut Film,
         cancel: &AtomicBool,
@@ -141,28 +143,31 @@ impl GpuRenderer {
         if missing.overlap(&range).is_none() {
             missing.insert(range)?;
         }
-        while self.dispatches.caution < CAUTION_LIMIT {
+        loop {
+            let shortfall = match outcome {
+                Err(Incomplete::Short(shortfall)) => shortfall,
+                Err(Incomplete::Failed(error)) => return Err(error),
+                Ok(stats) => return Ok(stats),
+            };
+            if self.dispatches.caution == CAUTION_LIMIT {
+                return Err(failed(format!("{shortfall}; update the graphics driver or render on the CPU")));
+            }
             self.dispatches.caution += 1;
             self.messages
                 .push(format!("{shortfall}; the missing samples are traced again in smaller pieces"));
             self.discard(loaded);
             let begin = Instant::now();
-            let mut stats = Stats::default();
-            let outcome = missing.iter().try_for_each(|range| {
+            let traced = missing.iter().try_fold(Stats::default(), |mut stats, range| {
                 stats.add(&self.trace_range(loaded, &range, film, cancel)?);
                 self.dispatches.drain(&self.gpu, Some(cancel))?;
-                loaded.film.note(range, begin.elapsed()).map_err(Incomplete::from)
+                loaded.film.note(range, begin.elapsed())?;
+                Ok(stats)
             });
-            match outcome.and_then(|()| self.finish_all(loaded, film)) {
-                Ok(added) => {
-                    stats.add(&added);
-                    return Ok(stats);
-                }
-                Err(Incomplete::Failed(error)) => return Err(error),
-                Err(Incomplete::Short(reason)) => shortfall = reason,
-            }
+            outcome = traced.and_then(|mut stats| {
+                stats.add(&self.finish_all(loaded, film)?);
+                Ok(stats)
+            });
         }
-        Err(failed(format!("{shortfall}; update the graphics driver or render on the CPU")))
     }
 }
 

@@ -25,8 +25,8 @@ const TWINS: [Twins; 8] = [
             "path/records",
         ],
         only_in_shader: "take_block iterations_over_lists",
-        only_in_rust: "continue_paths nothing next_sample of unused with_length2_or idle \
-                       is_small load is_permuted number vector",
+        only_in_rust: "continue_paths nothing next_sample with_length2_or idle is_small load is_permuted number \
+                       vector",
     },
     Twins { shader: "rules", rust: &["path/rules"], only_in_shader: "", only_in_rust: "book_hit_point" },
     Twins { shader: "camera", rust: &["camera"], only_in_shader: "", only_in_rust: "" },

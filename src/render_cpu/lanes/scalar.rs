@@ -26,9 +26,8 @@ macro_rules! operator {
     ($trait:ident, $method:ident, $operator:tt, $number:ty, $make:ident $(, $fused:ident)?) => {
         impl$(<const $fused: bool>)? $trait for $number {
             type Output = Self;
-            #[inline(always)]
-            fn $method(self, o: Self) -> Self {
-                $make(self.0 $operator o.0)
+            inlined! {
+                fn $method(self, o: Self) -> Self { $make(self.0 $operator o.0) }
             }
         }
     };
@@ -43,57 +42,34 @@ macro_rules! scalar_float {
 
         impl$(<const $fused: bool>)? Neg for $number {
             type Output = Self;
-            #[inline(always)]
-            fn neg(self) -> Self {
-                $make(-self.0)
+            inlined! {
+                fn neg(self) -> Self { $make(-self.0) }
             }
         }
 
         impl$(<const $fused: bool>)? Select<bool> for $number {
-            #[inline(always)]
-            fn select(m: bool, a: Self, b: Self) -> Self {
-                if m { a } else { b }
+            inlined! {
+                fn select(m: bool, a: Self, b: Self) -> Self { if m { a } else { b } }
             }
         }
 
         impl$(<const $fused: bool>)? Float for $number {
             type Mask = bool;
 
-            #[inline(always)]
-            fn mul_add(self, b: Self, c: Self) -> Self {
-                $make(if $is_fused { self.0.mul_add(b.0, c.0) } else { self.0 * b.0 + c.0 })
-            }
-            #[inline(always)]
-            fn neg_mul_add(self, b: Self, c: Self) -> Self {
-                $make(if $is_fused { (-self.0).mul_add(b.0, c.0) } else { c.0 - self.0 * b.0 })
-            }
-            #[inline(always)]
-            fn sqrt(self) -> Self {
-                $make(self.0.sqrt())
-            }
-            #[inline(always)]
-            fn abs(self) -> Self {
-                $make(self.0.abs())
-            }
-            #[inline(always)]
-            fn copysign(self, sign: Self) -> Self {
-                $make(self.0.copysign(sign.0))
-            }
-            #[inline(always)]
-            fn min(self, other: Self) -> Self {
-                if self.0 < other.0 { self } else { other }
-            }
-            #[inline(always)]
-            fn max(self, other: Self) -> Self {
-                if self.0 > other.0 { self } else { other }
-            }
-            #[inline(always)]
-            fn lt(self, other: Self) -> bool {
-                self.0 < other.0
-            }
-            #[inline(always)]
-            fn is_negative(self) -> bool {
-                self.0.is_sign_negative()
+            inlined! {
+                fn mul_add(self, b: Self, c: Self) -> Self {
+                    $make(if $is_fused { self.0.mul_add(b.0, c.0) } else { self.0 * b.0 + c.0 })
+                }
+                fn neg_mul_add(self, b: Self, c: Self) -> Self {
+                    $make(if $is_fused { (-self.0).mul_add(b.0, c.0) } else { c.0 - self.0 * b.0 })
+                }
+                fn sqrt(self) -> Self { $make(self.0.sqrt()) }
+                fn abs(self) -> Self { $make(self.0.abs()) }
+                fn copysign(self, sign: Self) -> Self { $make(self.0.copysign(sign.0)) }
+                fn min(self, other: Self) -> Self { if self.0 < other.0 { self } else { other } }
+                fn max(self, other: Self) -> Self { if self.0 > other.0 { self } else { other } }
+                fn lt(self, other: Self) -> bool { self.0 < other.0 }
+                fn is_negative(self) -> bool { self.0.is_sign_negative() }
             }
         }
     };
@@ -103,9 +79,8 @@ scalar_float!(Single<FUSED>, Single, FUSED, FUSED);
 scalar_float!(Double, Double, false);
 
 impl Mask for bool {
-    #[inline(always)]
-    fn bits(self) -> u32 {
-        u32::from(self)
+    inlined! {
+        fn bits(self) -> u32 { u32::from(self) }
     }
 }
 
@@ -114,57 +89,37 @@ impl Mask for bool {
 pub struct Word(pub u32);
 
 macro_rules! word_operator {
-    ($trait:ident, $method:ident, $function:path $(, $other:ty)?) => {
-        impl $trait$(<$other>)? for Word {
+    ($trait:ident, $method:ident, |$a:ident, $b:ident: $other:ty| $value:expr) => {
+        impl $trait<$other> for Word {
             type Output = Self;
-            #[inline(always)]
-            fn $method(self, o: Self) -> Self {
-                Word($function(self.0, o.0))
+            inlined! {
+                fn $method(self, $b: $other) -> Self { let Word($a) = self; Word($value) }
             }
         }
     };
 }
 
-word_operator!(Add, add, u32::wrapping_add);
-word_operator!(Sub, sub, u32::wrapping_sub);
-word_operator!(Mul, mul, u32::wrapping_mul);
-word_operator!(BitXor, bitxor, BitXor::bitxor);
-word_operator!(BitAnd, bitand, BitAnd::bitand);
-word_operator!(BitOr, bitor, BitOr::bitor);
-
-impl Shl<u32> for Word {
-    type Output = Self;
-    #[inline(always)]
-    fn shl(self, n: u32) -> Self {
-        Word(self.0 << n)
-    }
-}
-
-impl Shr<u32> for Word {
-    type Output = Self;
-    #[inline(always)]
-    fn shr(self, n: u32) -> Self {
-        Word(self.0 >> n)
-    }
-}
+word_operator!(Add, add, |a, b: Word| a.wrapping_add(b.0));
+word_operator!(Sub, sub, |a, b: Word| a.wrapping_sub(b.0));
+word_operator!(Mul, mul, |a, b: Word| a.wrapping_mul(b.0));
+word_operator!(BitXor, bitxor, |a, b: Word| a ^ b.0);
+word_operator!(BitAnd, bitand, |a, b: Word| a & b.0);
+word_operator!(BitOr, bitor, |a, b: Word| a | b.0);
+word_operator!(Shl, shl, |a, n: u32| a << n);
+word_operator!(Shr, shr, |a, n: u32| a >> n);
 
 impl Select<bool> for Word {
-    #[inline(always)]
-    fn select(m: bool, a: Self, b: Self) -> Self {
-        if m { a } else { b }
+    inlined! {
+        fn select(m: bool, a: Self, b: Self) -> Self { if m { a } else { b } }
     }
 }
 
 impl Unsigned for Word {
     type Mask = bool;
 
-    #[inline(always)]
-    fn eq(self, other: Self) -> bool {
-        self.0 == other.0
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        Word(self.0.min(other.0))
+    inlined! {
+        fn eq(self, other: Self) -> bool { self.0 == other.0 }
+        fn min(self, other: Self) -> Self { Word(self.0.min(other.0)) }
     }
 }
 
@@ -185,65 +140,24 @@ macro_rules! scalar_lanes {
         type Key = $signed;
         const WIDTH: usize = 1;
 
-        #[inline(always)]
-        fn splat(self, x: $real) -> Self::F {
-            $number(x)
-        }
-        #[inline(always)]
-        fn splat_u(self, x: u32) -> Word {
-            Word(x)
-        }
-        #[inline(always)]
-        fn mask(self, bits: u32) -> bool {
-            bits & 1 != 0
-        }
-        #[inline(always)]
-        fn load(self, from: &Wide<$real>) -> Self::F {
-            $number(from.0[0])
-        }
-        #[inline(always)]
-        fn load_u(self, from: &WideU) -> Word {
-            Word(from.0[0])
-        }
-        #[inline(always)]
-        fn expand(self, _m: bool, from: &[u32; MAX_LANES]) -> Word {
-            Word(from[0])
-        }
-        #[inline(always)]
-        fn store_u(u: Word, to: &mut WideU) {
-            to.0[0] = u.0;
-        }
-        #[inline(always)]
-        fn store(f: Self::F, to: &mut Wide<$real>) {
-            to.0[0] = f.0;
-        }
-        #[inline(always)]
-        fn negate_where(self, m: bool, f: Self::F) -> Self::F {
-            if m { -f } else { f }
-        }
-        #[inline(always)]
-        fn key(negated: Self::F) -> $signed {
-            negated.0.to_bits() as $signed
-        }
-        #[inline(always)]
-        fn from_key(k: $signed) -> Self::F {
-            $number(<$real>::from_bits(k as $bits))
-        }
-        #[inline(always)]
-        fn exclude(self, m: bool, k: $signed) -> $signed {
-            if m { 0 } else { k }
-        }
-        #[inline(always)]
-        fn float_of(u: Word) -> Self::F {
-            $number(u.0 as i32 as $real)
-        }
-        #[inline(always)]
-        fn fixed_point(self, f: Self::F) -> Word {
-            Word(nearest_integer(f64::from(f.0)))
-        }
-        #[inline(always)]
-        fn gather(self, rows: &Rows<'_, $real>, group: usize) -> [Self::F; 4] {
-            [0, 1, 2, 3].map(|column| $number(rows[0].0[4 * group + column]))
+        inlined! {
+            fn splat(self, x: $real) -> Self::F { $number(x) }
+            fn splat_u(self, x: u32) -> Word { Word(x) }
+            fn mask(self, bits: u32) -> bool { bits & 1 != 0 }
+            fn load(self, from: &Wide<$real>) -> Self::F { $number(from.0[0]) }
+            fn load_u(self, from: &WideU) -> Word { Word(from.0[0]) }
+            fn expand(self, _m: bool, from: &[u32; MAX_LANES]) -> Word { Word(from[0]) }
+            fn store_u(u: Word, to: &mut WideU) { to.0[0] = u.0; }
+            fn store(f: Self::F, to: &mut Wide<$real>) { to.0[0] = f.0; }
+            fn negate_where(self, m: bool, f: Self::F) -> Self::F { if m { -f } else { f } }
+            fn key(negated: Self::F) -> $signed { negated.0.to_bits() as $signed }
+            fn from_key(k: $signed) -> Self::F { $number(<$real>::from_bits(k as $bits)) }
+            fn exclude(self, m: bool, k: $signed) -> $signed { if m { 0 } else { k } }
+            fn float_of(u: Word) -> Self::F { $number(u.0 as i32 as $real) }
+            fn fixed_point(self, f: Self::F) -> Word { Word(nearest_integer(f64::from(f.0))) }
+            fn gather(self, rows: &Rows<'_, $real>, group: usize) -> [Self::F; 4] {
+                [0, 1, 2, 3].map(|column| $number(rows[0].0[4 * group + column]))
+            }
         }
     };
 }
@@ -251,26 +165,18 @@ macro_rules! scalar_lanes {
 macro_rules! scalar_key {
     ($signed:ident) => {
         impl Select<bool> for $signed {
-            #[inline(always)]
-            fn select(m: bool, a: Self, b: Self) -> Self {
-                if m { a } else { b }
+            inlined! {
+                fn select(m: bool, a: Self, b: Self) -> Self { if m { a } else { b } }
             }
         }
 
         impl Key for $signed {
             type Mask = bool;
 
-            #[inline(always)]
-            fn min(self, other: Self) -> Self {
-                Ord::min(self, other)
-            }
-            #[inline(always)]
-            fn lt(self, other: Self) -> bool {
-                self < other
-            }
-            #[inline(always)]
-            fn eq(self, other: Self) -> bool {
-                self == other
+            inlined! {
+                fn min(self, other: Self) -> Self { Ord::min(self, other) }
+                fn lt(self, other: Self) -> bool { self < other }
+                fn eq(self, other: Self) -> bool { self == other }
             }
         }
     };

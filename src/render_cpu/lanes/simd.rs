@@ -30,91 +30,45 @@ macro_rules! simd_lanes {
             type Key = $i<S>;
             const WIDTH: usize = $width;
 
-            #[inline(always)]
-            fn splat(self, x: f32) -> $f<S> {
-                $f::splat(self.0, x)
-            }
-            #[inline(always)]
-            fn splat_u(self, x: u32) -> $u<S> {
-                $u::splat(self.0, x)
-            }
-            #[inline(always)]
-            fn mask(self, bits: u32) -> $m<S> {
-                $m::from_bitmask(self.0, u64::from(bits))
-            }
-            #[inline(always)]
-            fn load(self, from: &Wide<f32>) -> $f<S> {
-                $f::from_slice(self.0, &from.0[..$width])
-            }
-            #[inline(always)]
-            fn load_u(self, from: &WideU) -> $u<S> {
-                $u::from_slice(self.0, &from.0[..$width])
-            }
-            #[inline(always)]
-            fn expand(self, m: $m<S>, from: &[u32; MAX_LANES]) -> $u<S> {
-                $u::from_slice(self.0, &from[..$width]).expand(m)
-            }
-            #[inline(always)]
-            fn store_u(u: $u<S>, to: &mut WideU) {
-                u.store_slice(&mut to.0[..$width]);
-            }
-            #[inline(always)]
-            fn store(f: $f<S>, to: &mut Wide<f32>) {
-                f.store_slice(&mut to.0[..$width]);
-            }
-            #[inline(always)]
-            fn keep(self, m: $m<S>, a: $u<S>) -> $u<S> {
-                self.0.$ones(m) & a
-            }
-            #[inline(always)]
-            fn fill(self, m: $m<S>, a: $u<S>) -> $u<S> {
-                self.0.$ones(m) | a
-            }
-            #[inline(always)]
-            fn negate_where(self, m: $m<S>, f: $f<S>) -> $f<S> {
-                let bits: $u<S> = f.bitcast();
-                (bits ^ self.keep(m, self.splat_u(1 << 31))).bitcast()
-            }
-            #[inline(always)]
-            fn key(negated: $f<S>) -> $i<S> {
-                negated.bitcast()
-            }
-            #[inline(always)]
-            fn from_key(k: $i<S>) -> $f<S> {
-                k.bitcast()
-            }
-            #[inline(always)]
-            fn exclude(self, m: $m<S>, k: $i<S>) -> $i<S> {
-                let bits: $u<S> = k.bitcast();
-                self.keep(!m, bits).bitcast()
-            }
-            #[inline(always)]
-            fn float_of(u: $u<S>) -> $f<S> {
-                let signed: $i<S> = u.bitcast();
-                signed.to_float()
-            }
-            #[inline(always)]
-            fn fixed_point(self, f: $f<S>) -> $u<S> {
-                self.0.$to_nearest(f).bitcast()
-            }
-            #[inline(always)]
-            fn permute(self, column: &Wide<f32>, indices: $u<S>) -> $f<S> {
-                self.0.$permute(self.load(column), indices)
-            }
-            #[inline(always)]
-            fn gather(self, rows: &Rows<'_, f32>, group: usize) -> [$f<S>; 4] {
-                $gather(self.0, rows, group)
-            }
-            #[inline(always)]
-            fn sin_cos_turns(self, u: $f<S>) -> ($f<S>, $f<S>) {
-                polynomial_sin_cos_turns(self, u)
+            inlined! {
+                fn splat(self, x: f32) -> $f<S> { $f::splat(self.0, x) }
+                fn splat_u(self, x: u32) -> $u<S> { $u::splat(self.0, x) }
+                fn mask(self, bits: u32) -> $m<S> { $m::from_bitmask(self.0, u64::from(bits)) }
+                fn load(self, from: &Wide<f32>) -> $f<S> { $f::from_slice(self.0, &from.0[..$width]) }
+                fn load_u(self, from: &WideU) -> $u<S> { $u::from_slice(self.0, &from.0[..$width]) }
+                fn expand(self, m: $m<S>, from: &[u32; MAX_LANES]) -> $u<S> {
+                    $u::from_slice(self.0, &from[..$width]).expand(m)
+                }
+                fn store_u(u: $u<S>, to: &mut WideU) { u.store_slice(&mut to.0[..$width]); }
+                fn store(f: $f<S>, to: &mut Wide<f32>) { f.store_slice(&mut to.0[..$width]); }
+                fn keep(self, m: $m<S>, a: $u<S>) -> $u<S> { self.0.$ones(m) & a }
+                fn fill(self, m: $m<S>, a: $u<S>) -> $u<S> { self.0.$ones(m) | a }
+                fn negate_where(self, m: $m<S>, f: $f<S>) -> $f<S> {
+                    let bits: $u<S> = f.bitcast();
+                    (bits ^ self.keep(m, self.splat_u(1 << 31))).bitcast()
+                }
+                fn key(negated: $f<S>) -> $i<S> { negated.bitcast() }
+                fn from_key(k: $i<S>) -> $f<S> { k.bitcast() }
+                fn exclude(self, m: $m<S>, k: $i<S>) -> $i<S> {
+                    let bits: $u<S> = k.bitcast();
+                    self.keep(!m, bits).bitcast()
+                }
+                fn float_of(u: $u<S>) -> $f<S> {
+                    let signed: $i<S> = u.bitcast();
+                    signed.to_float()
+                }
+                fn fixed_point(self, f: $f<S>) -> $u<S> { self.0.$to_nearest(f).bitcast() }
+                fn permute(self, column: &Wide<f32>, indices: $u<S>) -> $f<S> {
+                    self.0.$permute(self.load(column), indices)
+                }
+                fn gather(self, rows: &Rows<'_, f32>, group: usize) -> [$f<S>; 4] { $gather(self.0, rows, group) }
+                fn sin_cos_turns(self, u: $f<S>) -> ($f<S>, $f<S>) { polynomial_sin_cos_turns(self, u) }
             }
         }
 
         impl<S: Instructions> Mask for $m<S> {
-            #[inline(always)]
-            fn bits(self) -> u32 {
-                self.to_bitmask() as u32
+            inlined! {
+                fn bits(self) -> u32 { self.to_bitmask() as u32 }
             }
         }
 
@@ -125,72 +79,38 @@ macro_rules! simd_lanes {
         impl<S: Instructions> Float for $f<S> {
             type Mask = $m<S>;
 
-            #[inline(always)]
-            fn mul_add(self, b: Self, c: Self) -> Self {
-                SimdFloat::mul_add(self, b, c)
-            }
-            #[inline(always)]
-            fn neg_mul_add(self, b: Self, c: Self) -> Self {
-                SimdFloat::mul_add(-self, b, c)
-            }
-            #[inline(always)]
-            fn sqrt(self) -> Self {
-                SimdFloat::sqrt(self)
-            }
-            #[inline(always)]
-            fn abs(self) -> Self {
-                SimdBase::abs(self)
-            }
-            #[inline(always)]
-            fn copysign(self, sign: Self) -> Self {
-                SimdFloat::copysign(self, sign)
-            }
-            #[inline(always)]
-            fn min(self, other: Self) -> Self {
-                SimdBase::min(self, other)
-            }
-            #[inline(always)]
-            fn max(self, other: Self) -> Self {
-                SimdBase::max(self, other)
-            }
-            #[inline(always)]
-            fn lt(self, other: Self) -> $m<S> {
-                self.simd_lt(other)
-            }
-            #[inline(always)]
-            fn is_negative(self) -> $m<S> {
-                let bits: $i<S> = self.bitcast();
-                bits.simd_lt(0)
+            inlined! {
+                fn mul_add(self, b: Self, c: Self) -> Self { SimdFloat::mul_add(self, b, c) }
+                fn neg_mul_add(self, b: Self, c: Self) -> Self { SimdFloat::mul_add(-self, b, c) }
+                fn sqrt(self) -> Self { SimdFloat::sqrt(self) }
+                fn abs(self) -> Self { SimdBase::abs(self) }
+                fn copysign(self, sign: Self) -> Self { SimdFloat::copysign(self, sign) }
+                fn min(self, other: Self) -> Self { SimdBase::min(self, other) }
+                fn max(self, other: Self) -> Self { SimdBase::max(self, other) }
+                fn lt(self, other: Self) -> $m<S> { self.simd_lt(other) }
+                fn is_negative(self) -> $m<S> {
+                    let bits: $i<S> = self.bitcast();
+                    bits.simd_lt(0)
+                }
             }
         }
 
         impl<S: Instructions> Unsigned for $u<S> {
             type Mask = $m<S>;
 
-            #[inline(always)]
-            fn eq(self, other: Self) -> $m<S> {
-                self.simd_eq(other)
-            }
-            #[inline(always)]
-            fn min(self, other: Self) -> Self {
-                SimdBase::min(self, other)
+            inlined! {
+                fn eq(self, other: Self) -> $m<S> { self.simd_eq(other) }
+                fn min(self, other: Self) -> Self { SimdBase::min(self, other) }
             }
         }
 
         impl<S: Instructions> Key for $i<S> {
             type Mask = $m<S>;
 
-            #[inline(always)]
-            fn min(self, other: Self) -> Self {
-                SimdBase::min(self, other)
-            }
-            #[inline(always)]
-            fn lt(self, other: Self) -> $m<S> {
-                self.simd_lt(other)
-            }
-            #[inline(always)]
-            fn eq(self, other: Self) -> $m<S> {
-                self.simd_eq(other)
+            inlined! {
+                fn min(self, other: Self) -> Self { SimdBase::min(self, other) }
+                fn lt(self, other: Self) -> $m<S> { self.simd_lt(other) }
+                fn eq(self, other: Self) -> $m<S> { self.simd_eq(other) }
             }
         }
     };
@@ -199,9 +119,8 @@ macro_rules! simd_lanes {
 macro_rules! select {
     ($row:ident by $mask:ident) => {
         impl<S: Instructions> Select<$mask<S>> for $row<S> {
-            #[inline(always)]
-            fn select(m: $mask<S>, a: Self, b: Self) -> Self {
-                fearless_simd::Select::select(m, a, b)
+            inlined! {
+                fn select(m: $mask<S>, a: Self, b: Self) -> Self { fearless_simd::Select::select(m, a, b) }
             }
         }
     };

@@ -1,7 +1,7 @@
 //! Vectors whose components are rows: points, directions and colours.
 
 use super::{Float, Lanes, Select, Wide};
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, Sub};
 
 /// Three rows: a point, a direction or a colour.
 #[derive(Clone, Copy)]
@@ -16,39 +16,42 @@ pub struct V3<F> {
 
 impl<F: Copy + Add<Output = F>> Add for V3<F> {
     type Output = Self;
-    #[inline(always)]
-    fn add(self, o: Self) -> Self {
-        V3 { x: self.x + o.x, y: self.y + o.y, z: self.z + o.z }
+    inlined! {
+        fn add(self, o: Self) -> Self { V3 { x: self.x + o.x, y: self.y + o.y, z: self.z + o.z } }
     }
 }
 
 impl<F: Copy + Sub<Output = F>> Sub for V3<F> {
     type Output = Self;
-    #[inline(always)]
-    fn sub(self, o: Self) -> Self {
-        V3 { x: self.x - o.x, y: self.y - o.y, z: self.z - o.z }
-    }
-}
-
-impl<F: Copy + Mul<Output = F>> V3<F> {
-    /// Multiplies every component by `s`.
-    #[inline(always)]
-    pub fn scale(self, s: F) -> Self {
-        V3 { x: self.x * s, y: self.y * s, z: self.z * s }
-    }
-
-    /// Multiplies component by component.
-    #[inline(always)]
-    pub fn times(self, o: Self) -> Self {
-        V3 { x: self.x * o.x, y: self.y * o.y, z: self.z * o.z }
+    inlined! {
+        fn sub(self, o: Self) -> Self { V3 { x: self.x - o.x, y: self.y - o.y, z: self.z - o.z } }
     }
 }
 
 impl<F: Float> V3<F> {
-    /// Dot product.
-    #[inline(always)]
-    pub fn dot(self, o: Self) -> F {
-        self.x.mul_add(o.x, self.y.mul_add(o.y, self.z * o.z))
+    inlined! {
+        /// The same row in every component.
+        pub fn splat(row: F) -> Self { V3 { x: row, y: row, z: row } }
+
+        /// Multiplies every component by `s`.
+        pub fn scale(self, s: F) -> Self { V3 { x: self.x * s, y: self.y * s, z: self.z * s } }
+
+        /// Multiplies component by component.
+        pub fn times(self, o: Self) -> Self { V3 { x: self.x * o.x, y: self.y * o.y, z: self.z * o.z } }
+
+        /// Dot product.
+        pub fn dot(self, o: Self) -> F { self.x.mul_add(o.x, self.y.mul_add(o.y, self.z * o.z)) }
+
+        /// `self s + b`.
+        pub fn mul_add(self, s: F, b: Self) -> Self {
+            V3 { x: self.x.mul_add(s, b.x), y: self.y.mul_add(s, b.y), z: self.z.mul_add(s, b.z) }
+        }
+
+        /// `b - self s`.
+        pub fn neg_mul_add(self, s: F, b: Self) -> Self {
+            // Negates the factor that changes most often: a negated direction would occupy registers of its own.
+            V3 { x: s.neg_mul_add(self.x, b.x), y: s.neg_mul_add(self.y, b.y), z: s.neg_mul_add(self.z, b.z) }
+        }
     }
 
     /// The opposite vector where `m` is true, else this one.
@@ -56,25 +59,13 @@ impl<F: Float> V3<F> {
     pub fn negate_where<L: Lanes<F = F>>(self, l: L, m: L::M) -> Self {
         V3 { x: l.negate_where(m, self.x), y: l.negate_where(m, self.y), z: l.negate_where(m, self.z) }
     }
-
-    /// `self s + b`.
-    #[inline(always)]
-    pub fn mul_add(self, s: F, b: Self) -> Self {
-        V3 { x: self.x.mul_add(s, b.x), y: self.y.mul_add(s, b.y), z: self.z.mul_add(s, b.z) }
-    }
-
-    /// `b - self s`.
-    #[inline(always)]
-    pub fn neg_mul_add(self, s: F, b: Self) -> Self {
-        // Negates the factor that changes most often: a negated direction would occupy registers of its own.
-        V3 { x: s.neg_mul_add(self.x, b.x), y: s.neg_mul_add(self.y, b.y), z: s.neg_mul_add(self.z, b.z) }
-    }
 }
 
 impl<M: Copy, F: Select<M>> Select<M> for V3<F> {
-    #[inline(always)]
-    fn select(m: M, a: Self, b: Self) -> Self {
-        V3 { x: F::select(m, a.x, b.x), y: F::select(m, a.y, b.y), z: F::select(m, a.z, b.z) }
+    inlined! {
+        fn select(m: M, a: Self, b: Self) -> Self {
+            V3 { x: F::select(m, a.x, b.x), y: F::select(m, a.y, b.y), z: F::select(m, a.z, b.z) }
+        }
     }
 }
 

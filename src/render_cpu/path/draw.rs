@@ -1,14 +1,14 @@
 //! The random numbers of a path.
 
+use super::context::Context;
 use super::packet::Packet;
 use crate::kernel::parts;
-use crate::prepared::PreparedScene;
 use crate::render_cpu::lanes::{Lanes, unit_float};
 use crate::render_cpu::rng::numbers;
 
 /// The numbers for a packet's next rays.
 #[derive(Clone, Copy)]
-pub(super) struct Draw<L: Lanes> {
+pub(super) struct Drawn<L: Lanes> {
     /// For a direction, or for a point on the lens.
     pub pair: [L::F; 2],
     /// For the point in the pixel when the pair is used for the lens; otherwise not set.
@@ -18,24 +18,23 @@ pub(super) struct Draw<L: Lanes> {
 /// Draws the numbers for the next rays.
 #[inline(always)]
 pub(super) fn draw<L: Lanes, const PARTS: u32>(
-    l: L,
-    prepared: &PreparedScene<L::Real>,
+    context: Context<L, PARTS>,
     packet: &Packet<L>,
-    to: &mut Draw<L>,
+    drawn: &mut Drawn<L>,
 ) {
-    let with_lens = has_lens::<L, PARTS>(prepared);
-    let (blocks, settings) = (&packet.blocks, &prepared.settings);
+    let (l, with_lens) = (context.l, has_lens(context));
+    let (blocks, settings) = (&packet.blocks, &context.broadcast.prepared.settings);
     let [first, second] =
         numbers(l, settings, blocks.pixel, blocks.counter, blocks.key, packet.stream, with_lens);
     let unit = |u: [L::U; 2]| [unit_float(l, u[0]), unit_float(l, u[1])];
-    to.pair = unit(first);
+    drawn.pair = unit(first);
     if with_lens {
-        to.jitter = unit(second);
+        drawn.jitter = unit(second);
     }
 }
 
 /// Whether rays start on a lens.
 #[inline(always)]
-pub(super) fn has_lens<L: Lanes, const PARTS: u32>(prepared: &PreparedScene<L::Real>) -> bool {
-    PARTS & parts::LENS != 0 && prepared.camera.tau > L::Real::default()
+pub(super) fn has_lens<L: Lanes, const PARTS: u32>(context: Context<L, PARTS>) -> bool {
+    PARTS & parts::LENS != 0 && context.broadcast.prepared.camera.tau > L::Real::default()
 }

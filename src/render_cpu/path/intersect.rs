@@ -1,11 +1,10 @@
 //! The first phase: finds the nearest hits, and the points where they are.
 
+use super::context::Context;
 use super::packet::Packet;
 use super::records::ShadingRecords;
 use super::rules;
 use crate::kernel::{LoadShading, parts};
-use crate::prepared::PreparedScene;
-use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::bvh::{Stack, traverse};
 use crate::render_cpu::lanes::{Lanes, Mask};
 use crate::render_cpu::sphere::{
@@ -17,8 +16,7 @@ use crate::render_cpu::work::TileStats;
 /// Finds the nearest hit of each ray in a packet.
 #[inline(always)]
 pub(super) fn intersect<L: Lanes, const PARTS: u32>(
-    l: L,
-    broadcast: &BroadcastScene<L::Real>,
+    context: Context<L, PARTS>,
     packet: &mut Packet<L>,
     stack: &mut Stack,
     stats: &mut TileStats,
@@ -28,8 +26,9 @@ pub(super) fn intersect<L: Lanes, const PARTS: u32>(
     }
     let active = packet.busy & !packet.absorbed.bits();
     stats.rays += u64::from(active.count_ones());
-    let (rays, prepared) = (&packet.rays, &broadcast.prepared);
-    if let Some(nearest) = rules::book_nearest::<L, PARTS>(l, broadcast, rays) {
+    let Context { l, broadcast } = context;
+    let rays = &packet.rays;
+    if let Some(nearest) = rules::book_nearest(context, rays) {
         packet.nearest = nearest;
         return;
     }
@@ -39,11 +38,12 @@ pub(super) fn intersect<L: Lanes, const PARTS: u32>(
         nearest.take(l, near_root(l, rays, &sphere), sphere.number);
     }
     // A list can be empty. Kernels without the part for it have no code to search it.
-    match &prepared.hierarchy {
+    match &broadcast.prepared.hierarchy {
         Some(hierarchy) if parts::include(PARTS, parts::HIERARCHY) => {
             // A hit of the ground rules out the boxes behind it.
-            take_anchored::<L, PARTS>(l, prepared, rays, &mut nearest);
-            traverse(l, hierarchy, &prepared.two_root, rays, l.mask(active), stack, &mut nearest);
+            take_anchored(context, rays, &mut nearest);
+            let spheres = &broadcast.prepared.two_root;
+            traverse(l, hierarchy, spheres, rays, l.mask(active), stack, &mut nearest);
         }
         _ => {
             if parts::include(PARTS, parts::GLASS) {
@@ -52,7 +52,7 @@ pub(super) fn intersect<L: Lanes, const PARTS: u32>(
                     nearest.take(l, nearest_root(l, rays, &sphere), sphere.number);
                 }
             }
-            take_anchored::<L, PARTS>(l, prepared, rays, &mut nearest);
+            take_anchored(context, rays, &mut nearest);
         }
     }
     packet.nearest = nearest;
@@ -61,14 +61,14 @@ pub(super) fn intersect<L: Lanes, const PARTS: u32>(
 /// Takes the hits of the anchored spheres, where they are nearer.
 #[inline(always)]
 fn take_anchored<L: Lanes, const PARTS: u32>(
-    l: L,
-    prepared: &PreparedScene<L::Real>,
+    context: Context<L, PARTS>,
     rays: &Rays<L>,
     nearest: &mut Nearest<L>,
 ) {
     if !parts::include(PARTS, parts::EXTREMES) {
         return;
     }
+    let (l, prepared) = (context.l, &context.broadcast.prepared);
     let one = l.splat_u(1);
     let mut number = l.splat_u((prepared.opaque.len() + prepared.two_root.len()) as u32);
     for sphere in &prepared.anchored {
@@ -80,14 +80,13 @@ fn take_anchored<L: Lanes, const PARTS: u32>(
 /// The points of the hits; meaningless for lanes without one.
 #[inline(always)]
 pub(super) fn hit_point<L: Lanes, const PARTS: u32>(
-    l: L,
-    broadcast: &BroadcastScene<L::Real>,
+    context: Context<L, PARTS>,
     packet: &Packet<L>,
     record: &ShadingRecords<L>,
 ) -> SurfacePoint<L> {
-    let features = broadcast.prepared.features.in_kernel::<PARTS>();
+    let (l, features) = (context.l, context.features());
     let (rays, t) = (&packet.rays, packet.nearest.distance());
-    if let Some(point) = rules::book_hit_point::<L, PARTS>(broadcast, rays, t, record) {
+    if let Some(point) = rules::book_hit_point(context, rays, t, record) {
         return point;
     }
     let (reference, curvature, radius) = (record.reference(), record.curvature(), record.radius());

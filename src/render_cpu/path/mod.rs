@@ -7,6 +7,7 @@
 //!
 //! Twin: shaders/path.wgsl
 
+mod context;
 mod draw;
 mod intersect;
 mod packet;

@@ -14,7 +14,8 @@ pub(super) struct Packet<L: Lanes> {
     pub sine2: L::F,
     /// The sampler's stream: its key plus the number of bounces so far.
     pub stream: L::U,
-    pub screen: [L::F; 2],
+    /// Left and upper edge of the pixel on the plane at distance 1.
+    pub corner: [L::F; 2],
     /// Lanes whose path was absorbed, or which wait to be refilled. They end at the next step, add nothing and are not
     /// counted as rays.
     pub absorbed: L::M,
@@ -28,7 +29,7 @@ impl<L: Lanes> Packet<L> {
     #[inline(always)]
     pub fn idle(l: L) -> Self {
         let zero = l.constant(0.0);
-        let origin = V3 { x: zero, y: zero, z: zero };
+        let origin = V3::splat(zero);
         let none = l.splat_u(NONE);
         Packet {
             rays: Rays { origin, direction: origin, left: none, inside: none },
@@ -36,7 +37,7 @@ impl<L: Lanes> Packet<L> {
             throughput: origin,
             sine2: zero,
             stream: l.splat_u(0),
-            screen: [zero; 2],
+            corner: [zero; 2],
             absorbed: l.mask(0),
             blocks: LaneBlocks::none(l),
             busy: 0,

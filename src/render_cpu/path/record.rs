@@ -1,5 +1,6 @@
 //! One path, ray by ray, traced by the packets' code.
 
+use super::context::Context;
 use super::intersect::intersect;
 use super::packet::Packet;
 use super::schedule::continue_paths;
@@ -21,7 +22,7 @@ pub fn record<L: Lanes>(
     pixel: [u32; 2],
     index: u64,
 ) -> PathRecord {
-    let prepared = &broadcast.prepared;
+    let (context, prepared) = (Context::<L, { parts::ALL }> { l, broadcast }, &broadcast.prepared);
     let blocks = RefillBlock::of_range(index..index + 1, &prepared.settings, 1);
     let mut sums = vec![PixelSum::default(); prepared.settings.half_count()];
     let rows = sums.iter_mut().map(std::slice::from_mut).collect();
@@ -32,15 +33,7 @@ pub fn record<L: Lanes>(
     let in_scene = |position: V3<L::F>| (DVec3::from(vector::<L>(position)) + prepared.origin).to_array();
     let mut rays: Vec<RecordedRay> = Vec::new();
     loop {
-        continue_paths::<L, { parts::ALL }>(
-            l,
-            broadcast,
-            &mut packets,
-            &mut shaded,
-            &mut work,
-            true,
-            &mut stats,
-        );
+        continue_paths(context, &mut packets, &mut shaded, &mut work, true, &mut stats);
         let packet = &mut packets[0];
         // The last step of an absorbed path would add nothing.
         if packet.busy == 0 || packet.absorbed.bits() != 0 {
@@ -51,7 +44,7 @@ pub fn record<L: Lanes>(
         }
         let origin = in_scene(packet.rays.origin);
         let [direction, throughput] = [packet.rays.direction, packet.throughput].map(vector::<L>);
-        intersect::<L, { parts::ALL }>(l, broadcast, packet, &mut stack, &mut stats);
+        intersect(context, packet, &mut stack, &mut stats);
         let mut sphere = WideU::default();
         L::store_u(packet.nearest.sphere, &mut sphere);
         let hit = (sphere.0[0] != NONE).then(|| RecordedHit {

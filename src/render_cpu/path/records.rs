@@ -1,9 +1,8 @@
 //! The shading records of the spheres that were hit.
 
+use super::context::Context;
 use super::packet::{Packet, is_small};
 use crate::kernel::{ANCHORED_GROUP, Columns, GROUP, LoadShading, NONE, RECORD_COLUMNS};
-use crate::prepared::PreparedScene;
-use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::lanes::{Float, Lanes, Unsigned, V3, rows_of};
 
 /// Column groups of a record.
@@ -17,12 +16,12 @@ pub(super) struct ShadingRecords<L: Lanes> {
 impl<L: Lanes> ShadingRecords<L> {
     /// Loads the records. A lane without a hit gets an arbitrary record.
     #[inline(always)]
-    pub fn load<const PARTS: u32>(l: L, broadcast: &BroadcastScene<L::Real>, packet: &Packet<L>) -> Self {
-        let (prepared, hit) = (&broadcast.prepared, packet.nearest.sphere);
-        let with_anchored = prepared.features.in_kernel::<PARTS>().anchored();
+    pub fn load<const PARTS: u32>(context: Context<L, PARTS>, packet: &Packet<L>) -> Self {
+        let (Context { l, broadcast }, hit) = (context, packet.nearest.sphere);
+        let with_anchored = context.features().anchored();
         let is_needed = |group: usize| group != ANCHORED_GROUP || with_anchored;
         let mut groups = [[l.constant(0.0); GROUP]; GROUPS];
-        if is_permuted::<L, PARTS>(prepared) {
+        if is_permuted(context) {
             for (group, loaded) in groups.iter_mut().enumerate() {
                 if is_needed(group) {
                     for (column, number) in loaded.iter_mut().enumerate() {
@@ -31,7 +30,7 @@ impl<L: Lanes> ShadingRecords<L> {
                 }
             }
         } else {
-            let rows = rows_of::<L>(&prepared.records, l.keep(!hit.eq(l.splat_u(NONE)), hit));
+            let rows = rows_of::<L>(&broadcast.prepared.records, l.keep(!hit.eq(l.splat_u(NONE)), hit));
             // Not a loop, because the compiler would not unroll it.
             if is_needed(0) {
                 groups[0] = l.gather(&rows, 0);
@@ -65,10 +64,10 @@ impl<L: Lanes> ShadingRecords<L> {
 /// Whether the records are so few that a column fits a register. An instruction then loads a field of all lanes, and to
 /// load it again costs less than to keep it.
 #[inline(always)]
-pub(super) fn is_permuted<L: Lanes, const PARTS: u32>(prepared: &PreparedScene<L::Real>) -> bool {
+pub(super) fn is_permuted<L: Lanes, const PARTS: u32>(context: Context<L, PARTS>) -> bool {
     // With one lane there are no such columns. The general kernel asks all the same: compiled without the question, it
     // takes 1.07 times as long on the book.
-    !is_small::<L, PARTS>() && prepared.records.len() <= L::PERMUTED_ROWS
+    !is_small::<L, PARTS>() && context.broadcast.prepared.records.len() <= L::PERMUTED_ROWS
 }
 
 impl<L: Lanes> Columns<L::Real> for ShadingRecords<L> {

@@ -1,12 +1,12 @@
 //! The third phase: spawns the next rays, from the surface that was hit, or from the camera where a path has ended.
 
-use super::draw::{Draw, has_lens};
+use super::context::Context;
+use super::draw::{Drawn, has_lens};
 use super::packet::{Packet, is_small};
 use super::records::{ShadingRecords, is_permuted};
 use super::rules::diffuse_direction;
 use super::shade::{Shaded, SurfaceInteraction};
 use crate::kernel::{EYE, NEAR_ZERO, NONE, parts};
-use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::camera::{CameraRays, lens_ray, pinhole_ray};
 use crate::render_cpu::lanes::{Float, Lanes, Mask, Unsigned, V3, is_idle, is_wide};
 use crate::render_cpu::material::{
@@ -18,30 +18,31 @@ use crate::stages::DielectricLaws;
 /// Spawns the next ray of each lane.
 #[inline(always)]
 pub(super) fn spawn_ray<L: Lanes, const PARTS: u32>(
-    l: L,
-    broadcast: &BroadcastScene<L::Real>,
+    context: Context<L, PARTS>,
     packet: &mut Packet<L>,
     shaded: &Shaded<L>,
 ) {
-    let &Shaded { ended, draw, interaction, .. } = shaded;
-    let features = broadcast.prepared.features.in_kernel::<PARTS>();
+    let l = context.l;
+    let &Shaded { ended, drawn, interaction, .. } = shaded;
 
-    // Both kinds of rays share the sine and cosine; a ray from a pinhole needs neither.
-    let needs_turn =
-        !is_idle::<L>(!ended) || !is_small::<L, PARTS>() || has_lens::<L, PARTS>(&broadcast.prepared);
-    let turn = if needs_turn { Turn::of(l, &draw) } else { Turn::unused(&draw) };
+    // Both kinds of rays share the sine and cosine. A ray from a pinhole needs neither, so any numbers do.
+    let [u0, u1] = drawn.pair;
+    let is_pinhole = is_idle::<L>(!ended) && is_small::<L, PARTS>() && !has_lens(context);
+    let sine_cosine = if is_pinhole { (u0, u0) } else { l.sin_cos_turns(u1) };
 
     // Scatter where paths continue, and start at the camera where they have ended.
-    let scattered = if is_idle::<L>(!ended) {
-        Scattered::unused(l)
+    let (scattered, continues_outside) = if is_idle::<L>(!ended) {
+        (Scattered::unused(l), l.mask(0))
     } else {
-        scatter_path::<L, PARTS>(l, broadcast, packet, shaded, &turn)
+        let scattered = scatter_path(context, packet, shaded, sine_cosine);
+        let continues_outside = interaction.front_face ^ scattered.refracts;
+        (scattered, continues_outside)
     };
     let camera = if is_idle::<L>(ended) {
         // Equal alternatives make the selections below disappear.
         CameraRays { origin: interaction.position, direction: scattered.direction }
     } else {
-        generate_camera_ray::<L, PARTS>(l, broadcast, packet.screen, &draw, &turn)
+        generate_camera_ray(context, packet.corner, &drawn, sine_cosine)
     };
     let direction = ended.select(camera.direction, scattered.direction);
     let (direction, length2) = with_length2_or(l, direction, interaction.normal);
@@ -53,9 +54,8 @@ pub(super) fn spawn_ray<L: Lanes, const PARTS: u32>(
     // Remember the sphere that a ray leaves or is inside of.
     let none = l.splat_u(NONE);
     let hit = l.fill(ended, packet.nearest.sphere);
-    let continues_outside = interaction.front_face ^ scattered.refracts;
     let mut left = continues_outside.select(hit, none);
-    if features.eye_on_surface() {
+    if context.features().eye_on_surface() {
         left = ended.select(l.splat_u(EYE), left);
     }
     packet.rays = Rays {
@@ -64,26 +64,6 @@ pub(super) fn spawn_ray<L: Lanes, const PARTS: u32>(
         left,
         inside: continues_outside.select(none, hit),
     };
-}
-
-/// Sine and cosine of a draw's second number, in turns.
-struct Turn<L: Lanes> {
-    sine: L::F,
-    cosine: L::F,
-}
-
-impl<L: Lanes> Turn<L> {
-    #[inline(always)]
-    fn of(l: L, draw: &Draw<L>) -> Self {
-        let (sine, cosine) = l.sin_cos_turns(draw.pair[1]);
-        Turn { sine, cosine }
-    }
-
-    /// Arbitrary numbers, for rays that need neither sine nor cosine.
-    #[inline(always)]
-    fn unused(draw: &Draw<L>) -> Self {
-        Turn { sine: draw.pair[0], cosine: draw.pair[0] }
-    }
 }
 
 /// `v` and its squared length, or the unit vector `substitute` and 1 where `v` is too short to have a direction.
@@ -101,51 +81,48 @@ fn with_length2_or<L: Lanes>(l: L, v: V3<L::F>, substitute: V3<L::F>) -> (V3<L::
 /// The camera rays of new paths.
 #[inline(always)]
 fn generate_camera_ray<L: Lanes, const PARTS: u32>(
-    l: L,
-    broadcast: &BroadcastScene<L::Real>,
-    screen: [L::F; 2],
-    draw: &Draw<L>,
-    turn: &Turn<L>,
+    context: Context<L, PARTS>,
+    corner: [L::F; 2],
+    drawn: &Drawn<L>,
+    (sine, cosine): (L::F, L::F),
 ) -> CameraRays<L> {
-    let with_lens = has_lens::<L, PARTS>(&broadcast.prepared);
-    let jitter = match (broadcast.prepared.features.in_kernel::<PARTS>().antialiasing(), with_lens) {
+    let (l, camera, with_lens) = (context.l, &context.broadcast.camera, has_lens(context));
+    let jitter = match (context.features().antialiasing(), with_lens) {
         (false, _) => [l.constant(0.5); 2],
-        (true, false) => draw.pair,
-        (true, true) => draw.jitter,
+        (true, false) => drawn.pair,
+        (true, true) => drawn.jitter,
     };
-    if with_lens {
-        let lens_radius = draw.pair[0].sqrt();
-        lens_ray(l, &broadcast.camera, screen, jitter, [lens_radius * turn.cosine, lens_radius * turn.sine])
-    } else {
-        pinhole_ray(l, &broadcast.camera, screen, jitter)
+    if !with_lens {
+        return pinhole_ray(l, camera, corner, jitter);
     }
+    let radius = drawn.pair[0].sqrt();
+    lens_ray(l, camera, corner, jitter, [radius * cosine, radius * sine])
 }
 
 /// Scatters paths at the surfaces that they have hit.
 #[inline(always)]
 fn scatter_path<L: Lanes, const PARTS: u32>(
-    l: L,
-    broadcast: &BroadcastScene<L::Real>,
+    context: Context<L, PARTS>,
     packet: &mut Packet<L>,
     shaded: &Shaded<L>,
-    turn: &Turn<L>,
+    (sine, cosine): (L::F, L::F),
 ) -> Scattered<L> {
-    let (one, prepared) = (l.constant(1.0), &broadcast.prepared);
-    let features = prepared.features.in_kernel::<PARTS>();
+    let (l, features) = (context.l, context.features());
+    let one = l.constant(1.0);
     let direction = packet.rays.direction;
     let SurfaceInteraction { normal, outward_cosine, front_face, .. } = shaded.interaction;
-    let material = if is_permuted::<L, PARTS>(prepared) {
-        material_of(&ShadingRecords::load::<PARTS>(l, broadcast, packet))
+    let material = if is_permuted(context) {
+        material_of(&ShadingRecords::load(context, packet))
     } else {
         shaded.material
     };
 
     // A uniform unit vector. Its pole is vertical, like that of the sky and of the ground, which scatters most of the
     // light. Evenly spaced numbers then give evenly spaced heights.
-    let [u0, _] = shaded.draw.pair;
+    let [u0, _] = shaded.drawn.pair;
     let rho = (u0 * (one - u0)).sqrt();
     let rho = rho + rho;
-    let unit = V3 { x: rho * turn.cosine, y: one - (u0 + u0), z: rho * turn.sine };
+    let unit = V3 { x: rho * cosine, y: one - (u0 + u0), z: rho * sine };
 
     let incidence = incidence_of(l, outward_cosine);
     let laws = features.dielectric_laws();
@@ -156,8 +133,7 @@ fn scatter_path<L: Lanes, const PARTS: u32>(
     } else {
         scatter::<L, true>(l, &material, laws, direction, normal, &incidence, front_face, unit, u0)
     };
-    scattered.direction =
-        diffuse_direction::<L, PARTS>(l, prepared, &material, scattered.direction, normal, unit);
+    scattered.direction = diffuse_direction(context, &material, scattered.direction, normal, unit);
     scattered
 }
 

@@ -9,6 +9,7 @@
 //! phase is fast if it is short and consists of several chains that do not wait for each other. That is why hit points
 //! and random numbers are found together in one phase, and sines and the angles of glass in another.
 
+use super::context::Context;
 use super::intersect::intersect;
 use super::packet::{Packet, is_small};
 use super::scatter::spawn_ray;
@@ -33,19 +34,20 @@ pub fn trace<L: Lanes, const PARTS: u32>(
     broadcast: &BroadcastScene<L::Real>,
     work: &mut Work,
 ) -> TileStats {
+    let context = Context::<L, PARTS> { l, broadcast };
     let mut packets: [Packet<L>; PACKETS] =
         [Packet::idle(l), Packet::idle(l), Packet::idle(l), Packet::idle(l)];
     let packets = if is_small::<L, PARTS>() { &mut packets[..SINGLE_RAYS] } else { &mut packets[..] };
     let mut shaded = [Shaded::nothing(l); PACKETS];
     let mut stats = TileStats::default();
     let mut stack = EMPTY_STACK;
-    continue_paths::<L, PARTS>(l, broadcast, packets, &mut shaded, work, true, &mut stats);
+    continue_paths(context, packets, &mut shaded, work, true, &mut stats);
     let pause = if is_wide::<L>() { work.pause() } else { 0 };
     let mut steps_to_refill = pause;
     loop {
         let mut busy = 0;
         for packet in &mut *packets {
-            intersect::<L, PARTS>(l, broadcast, packet, &mut stack, &mut stats);
+            intersect(context, packet, &mut stack, &mut stats);
             busy |= packet.busy;
         }
         if busy == 0 {
@@ -54,15 +56,14 @@ pub fn trace<L: Lanes, const PARTS: u32>(
         stats.offered_lanes += (packets.len() * L::WIDTH) as u64;
         let refills = steps_to_refill == 0;
         steps_to_refill = if refills { pause } else { steps_to_refill - 1 };
-        continue_paths::<L, PARTS>(l, broadcast, packets, &mut shaded, work, refills, &mut stats);
+        continue_paths(context, packets, &mut shaded, work, refills, &mut stats);
     }
 }
 
 /// Shades the hits of all packets and spawns their next rays.
 #[inline(always)]
 pub(super) fn continue_paths<L: Lanes, const PARTS: u32>(
-    l: L,
-    broadcast: &BroadcastScene<L::Real>,
+    context: Context<L, PARTS>,
     packets: &mut [Packet<L>],
     shaded: &mut [Shaded<L>],
     work: &mut Work,
@@ -71,16 +72,16 @@ pub(super) fn continue_paths<L: Lanes, const PARTS: u32>(
 ) {
     if is_small::<L, PARTS>() {
         for packet in packets {
-            let mut shaded = Shaded::nothing(l);
-            shade::<L, PARTS>(l, broadcast, packet, work, stats, refills, &mut shaded);
-            spawn_ray::<L, PARTS>(l, broadcast, packet, &shaded);
+            let mut shaded = Shaded::nothing(context.l);
+            shade(context, packet, work, stats, refills, &mut shaded);
+            spawn_ray(context, packet, &shaded);
         }
         return;
     }
     for (packet, shaded) in packets.iter_mut().zip(&mut *shaded) {
-        shade::<L, PARTS>(l, broadcast, packet, work, stats, refills, shaded);
+        shade(context, packet, work, stats, refills, shaded);
     }
     for (packet, shaded) in packets.iter_mut().zip(shaded) {
-        spawn_ray::<L, PARTS>(l, broadcast, packet, shaded);
+        spawn_ray(context, packet, shaded);
     }
 }

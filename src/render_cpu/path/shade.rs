@@ -1,15 +1,15 @@
 //! The second phase: adds light, ends paths, and finds the hit points and random numbers of the next rays.
 
-use super::draw::{Draw, draw};
+use super::context::Context;
+use super::draw::{Drawn, draw};
 use super::intersect::hit_point;
 use super::packet::{Packet, pixel_position};
 use super::records::{ShadingRecords, is_permuted};
 use super::rules::{shown_colour, strip_reflectance};
 use crate::kernel::{LoadShading, NONE, RADIANCE_TOTAL_LIMIT};
-use crate::prepared::PreparedScene;
 use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::camera::screen;
-use crate::render_cpu::lanes::{Float, Lanes, Mask, Unsigned, V3, is_idle, is_wide};
+use crate::render_cpu::lanes::{Float, Lanes, Mask, Unsigned, V3, is_idle};
 use crate::render_cpu::material::{Material, material_of};
 use crate::render_cpu::work::{TileStats, Work};
 use crate::stages::SurfaceRule;
@@ -19,10 +19,10 @@ use crate::stages::SurfaceRule;
 pub(super) struct Shaded<L: Lanes> {
     /// Lanes whose path ends here; their next ray starts at the camera.
     pub ended: L::M,
-    /// Lanes whose block is done and which wait to be refilled.
+    /// Lanes whose block is done and which wait to be refilled; none in a packet of few lanes.
     pub waiting: L::M,
     /// The random numbers of the next rays.
-    pub draw: Draw<L>,
+    pub drawn: Drawn<L>,
     /// Where the other lanes continue.
     pub interaction: SurfaceInteraction<L>,
     /// The materials there, unless [`is_permuted`].
@@ -47,11 +47,11 @@ impl<L: Lanes> Shaded<L> {
     #[inline(always)]
     pub fn nothing(l: L) -> Self {
         let zero = l.constant(0.0);
-        let position = V3 { x: zero, y: zero, z: zero };
+        let position = V3::splat(zero);
         Shaded {
             ended: l.mask(0),
             waiting: l.mask(0),
-            draw: Draw { pair: [zero; 2], jitter: [zero; 2] },
+            drawn: Drawn { pair: [zero; 2], jitter: [zero; 2] },
             interaction: SurfaceInteraction {
                 position,
                 normal: position,
@@ -69,16 +69,15 @@ impl<L: Lanes> Shaded<L> {
 /// The hit points do not depend on the random numbers. Found here, they occupy the processor while it waits for these.
 #[inline(always)]
 pub(super) fn shade<L: Lanes, const PARTS: u32>(
-    l: L,
-    broadcast: &BroadcastScene<L::Real>,
+    context: Context<L, PARTS>,
     packet: &mut Packet<L>,
     work: &mut Work,
     stats: &mut TileStats,
     refills: bool,
     shaded: &mut Shaded<L>,
 ) {
-    let prepared = &broadcast.prepared;
-    let one = l.constant(1.0);
+    let Context { l, broadcast } = context;
+    let (zero, one) = (l.constant(0.0), l.constant(1.0));
 
     // End paths that miss, that were absorbed, or that have all their rays.
     let miss = packet.nearest.sphere.eq(l.splat_u(NONE));
@@ -87,35 +86,30 @@ pub(super) fn shade<L: Lanes, const PARTS: u32>(
 
     // Add the light of the sky where rays miss, or what the stage shows in its place.
     let mut lit = miss & !packet.absorbed;
-    let mut light = if is_idle::<L>(lit) {
-        V3 { x: l.constant(0.0), y: l.constant(0.0), z: l.constant(0.0) }
-    } else {
-        sky_light(l, broadcast, packet.rays.direction.y)
-    };
+    let mut light =
+        if is_idle::<L>(lit) { V3::splat(zero) } else { sky_light(l, broadcast, packet.rays.direction.y) };
     let outward = || {
-        let record = ShadingRecords::load::<PARTS>(l, broadcast, packet);
-        hit_point::<L, PARTS>(l, broadcast, packet, &record).outward
+        let record = ShadingRecords::load(context, packet);
+        hit_point(context, packet, &record).outward
     };
-    if let Some(shown) = shown_colour::<L, PARTS>(l, prepared, packet, miss, light, outward) {
-        light = shown;
-        lit = if is_wide::<L>() { !packet.absorbed } else { l.mask(u32::MAX) };
-        ended = l.mask(u32::MAX);
+    if let Some(shown) = shown_colour(context, packet, miss, light, outward) {
+        (light, lit, ended) = (shown, !packet.absorbed, l.mask(u32::MAX));
     }
     if !is_idle::<L>(lit) {
         add_radiance(l, packet, lit, light, stats);
     }
 
     // Find where the other paths continue, and what the surface leaves of their light.
-    let full = V3 { x: one, y: one, z: one };
+    let full = V3::splat(one);
     if is_idle::<L>(!ended) {
         packet.throughput = full;
     } else {
-        let record = ShadingRecords::load::<PARTS>(l, broadcast, packet);
-        if !is_permuted::<L, PARTS>(prepared) {
+        let record = ShadingRecords::load(context, packet);
+        if !is_permuted(context) {
             shaded.material = material_of(&record);
         }
-        shaded.interaction = surface_interaction::<L, PARTS>(l, broadcast, packet, &record);
-        let albedo = albedo_of::<L, PARTS>(l, prepared, &record, packet.blocks.pixel);
+        shaded.interaction = surface_interaction(context, packet, &record);
+        let albedo = albedo_of(context, &record, packet.blocks.pixel);
         packet.throughput = ended.select(full, packet.throughput.times(albedo));
     }
 
@@ -125,7 +119,7 @@ pub(super) fn shade<L: Lanes, const PARTS: u32>(
     shaded.ended = ended;
 
     // Draw the random numbers of the next rays.
-    draw::<L, PARTS>(l, prepared, packet, &mut shaded.draw);
+    draw(context, packet, &mut shaded.drawn);
 }
 
 /// The sky's radiance in a direction with this y component, in units of the film.
@@ -161,8 +155,8 @@ fn add_radiance<L: Lanes>(l: L, packet: &mut Packet<L>, lit: L::M, light: V3<L::
     add(2, radiance.z);
 }
 
-/// Moves lanes whose path has ended to the next sample of their block, or to the next block. Where there are many lanes,
-/// those at the end of their block are refilled together, if `refills`. Returns the lanes that wait for that.
+/// Moves lanes whose path has ended to the next sample of their block. Those at its end are refilled together, if
+/// `refills`; otherwise they are returned, and wait.
 #[inline(always)]
 fn next_sample<L: Lanes>(
     l: L,
@@ -173,21 +167,13 @@ fn next_sample<L: Lanes>(
     refills: bool,
 ) -> L::M {
     let next = packet.blocks.counter + packet.blocks.step;
-    if is_wide::<L>() {
-        let at_end = ended & next.eq(packet.blocks.end);
-        packet.blocks.counter = (ended & !at_end).select(next, packet.blocks.counter);
-        let done = at_end.bits();
-        if !refills || done == 0 {
-            return at_end;
-        }
-        enter_block(l, broadcast, packet, work, done);
-    } else {
-        packet.blocks.counter = ended.select(next, packet.blocks.counter);
-        let done = (ended & packet.blocks.counter.eq(packet.blocks.end)).bits();
-        if done != 0 {
-            enter_block(l, broadcast, packet, work, done);
-        }
+    let at_end = ended & next.eq(packet.blocks.end);
+    packet.blocks.counter = (ended & !at_end).select(next, packet.blocks.counter);
+    let done = at_end.bits();
+    if !refills || done == 0 {
+        return at_end;
     }
+    enter_block(l, broadcast, packet, work, done);
     l.mask(0)
 }
 
@@ -203,19 +189,18 @@ fn enter_block<L: Lanes>(
     let (blocks, busy) = work.refill(l, done, packet.busy, packet.blocks);
     (packet.blocks, packet.busy) = (blocks, busy);
     let [x, y] = pixel_position(l, blocks.pixel);
-    packet.screen = screen(l, &broadcast.camera, x, y);
+    packet.corner = screen(l, &broadcast.camera, x, y);
 }
 
 /// Finds where and from which side the rays meet the surfaces that they have hit.
 #[inline(always)]
 fn surface_interaction<L: Lanes, const PARTS: u32>(
-    l: L,
-    broadcast: &BroadcastScene<L::Real>,
+    context: Context<L, PARTS>,
     packet: &Packet<L>,
     record: &ShadingRecords<L>,
 ) -> SurfaceInteraction<L> {
-    let features = broadcast.prepared.features.in_kernel::<PARTS>();
-    let point = hit_point::<L, PARTS>(l, broadcast, packet, record);
+    let (l, features) = (context.l, context.features());
+    let point = hit_point(context, packet, record);
     let outward_cosine = packet.rays.direction.dot(point.outward);
     let mut front_face = outward_cosine.lt(l.constant(0.0));
     if features.surface() == SurfaceRule::Exact {
@@ -231,14 +216,14 @@ fn surface_interaction<L: Lanes, const PARTS: u32>(
 /// The reflectance of the surfaces that were hit.
 #[inline(always)]
 fn albedo_of<L: Lanes, const PARTS: u32>(
-    l: L,
-    prepared: &PreparedScene<L::Real>,
+    context: Context<L, PARTS>,
     record: &ShadingRecords<L>,
     pixel: L::U,
 ) -> V3<L::F> {
-    if prepared.features.in_kernel::<PARTS>().reflectance_strips() {
-        let reflectance = strip_reflectance(l, prepared, pixel);
-        return V3 { x: reflectance, y: reflectance, z: reflectance };
+    if context.features().reflectance_strips() {
+        let width = context.broadcast.prepared.settings.width;
+        let reflectance = strip_reflectance(context.l, width, pixel);
+        return V3::splat(reflectance);
     }
     record.albedo()
 }

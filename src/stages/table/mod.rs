@@ -478,7 +478,14 @@ pub(super) const STAGES: &[Stage] = &[
         alt: "A hollow glass ball, a matte blue ball and a golden metal ball in a row on yellow-green \
               ground.",
         pair: None,
-        setup: Setup { width: 800, height: 450, samples_per_pixel: 200, max_depth: 24, ..THREE_BALLS },
+        setup: Setup {
+            width: 800,
+            height: 450,
+            samples_per_pixel: 200,
+            max_depth: 24,
+            is_in_book: false,
+            ..THREE_BALLS
+        },
     },
     // Chapters 12 to 14: the positionable camera, its lens, and the final picture.
     Stage {
@@ -599,6 +606,7 @@ pub(super) const STAGES: &[Stage] = &[
             height: 675,
             samples_per_pixel: 500,
             max_depth: 50,
+            is_in_book: true,
         },
     },
 ];

@@ -15,6 +15,7 @@ pub(super) const ONE_RAY: Setup = Setup {
     height: 270,
     samples_per_pixel: 1,
     max_depth: 1,
+    is_in_book: true,
 };
 
 /// Paths with as many rays as the book allows. The number of samples is a power of two, at which Sobol points are most
@@ -27,6 +28,7 @@ pub(super) const PATHS: Setup = Setup {
     height: 270,
     samples_per_pixel: 128,
     max_depth: 50,
+    is_in_book: true,
 };
 
 pub(super) const THREE_BALLS: Setup = Setup { scene: || three_spheres(LeftSphere::HollowGlass), ..PATHS };

@@ -1,4 +1,5 @@
-//! Camera-independent properties of a scene: covered spheres, and layers thin enough for rounding to show.
+//! Spheres with equal or nearly equal surfaces: the covered ones, and layers thin enough for rounding to show. They do not
+//! depend on the camera.
 
 use crate::job::render::RenderJob;
 use crate::kernel::HALF_EPSILON;
@@ -29,8 +30,9 @@ const TRAPPING_CLOSING_RATIO: f64 = 1e4;
 /// two by place and size.
 const CELL_LIMIT: usize = 128;
 
+/// The overlaps of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Facts {
+pub(super) struct Overlaps {
     /// For each sphere, whether an earlier one of equal place and size covers it.
     is_covered: Vec<bool>,
     layers: Vec<ThinLayer>,
@@ -46,15 +48,15 @@ struct ThinLayer {
     opening: f64,
 }
 
-impl Facts {
+impl Overlaps {
     pub fn of(scene: &Scene) -> Self {
-        let mut facts = Facts { is_covered: vec![false; scene.spheres.len()], layers: Vec::new() };
-        facts.compare_neighbours(&scene.spheres);
-        facts.layers.sort_by_key(|layer| layer.spheres);
-        facts.layers.dedup();
-        let Facts { is_covered, layers } = &mut facts;
+        let mut overlaps = Overlaps { is_covered: vec![false; scene.spheres.len()], layers: Vec::new() };
+        overlaps.compare_neighbours(&scene.spheres);
+        overlaps.layers.sort_by_key(|layer| layer.spheres);
+        overlaps.layers.dedup();
+        let Overlaps { is_covered, layers } = &mut overlaps;
         layers.retain(|layer| layer.spheres.iter().all(|index| !is_covered[*index as usize]));
-        facts
+        overlaps
     }
 
     /// Whether an equal sphere hides this one completely.
@@ -201,8 +203,8 @@ mod tests {
         scene
     }
 
-    fn covered(facts: &Facts) -> Vec<u32> {
-        (0..facts.is_covered.len() as u32).filter(|index| facts.covers(*index)).collect()
+    fn covered(overlaps: &Overlaps) -> Vec<u32> {
+        (0..overlaps.is_covered.len() as u32).filter(|index| overlaps.covers(*index)).collect()
     }
 
     /// Close spheres are found, whatever their place and size.
@@ -217,10 +219,10 @@ mod tests {
             let by = DVec3::new(random(i, 5), random(i, 6), random(i, 7)) - 0.5;
             let near = (center + by * 0.005 * radius, radius * (1.0 - 0.004 * random(i, 8)));
             let far = (center + DVec3::X * 0.02 * radius, radius);
-            let facts = Facts::of(&scene([(center, radius), near, far, (center, radius)]));
-            assert_eq!(covered(&facts), [3], "{center} {radius}");
-            assert!(facts.layers.iter().any(|layer| layer.spheres == [0, 1]), "{center} {radius}");
-            assert!(facts.layers.iter().all(|layer| layer.spheres != [0, 2]), "{center} {radius}");
+            let overlaps = Overlaps::of(&scene([(center, radius), near, far, (center, radius)]));
+            assert_eq!(covered(&overlaps), [3], "{center} {radius}");
+            assert!(overlaps.layers.iter().any(|layer| layer.spheres == [0, 1]), "{center} {radius}");
+            assert!(overlaps.layers.iter().all(|layer| layer.spheres != [0, 2]), "{center} {radius}");
         }
     }
 
@@ -228,8 +230,8 @@ mod tests {
     fn tiny_distant_sphere_is_no_layer() {
         for center in [DVec3::new(4.0, 1.0, 0.0), DVec3::splat(-1e3), DVec3::X] {
             for radius in [1e-18, 1e-16, 1e-14] {
-                let facts = Facts::of(&scene([(center, radius), (DVec3::NEG_Y, 1.0)]));
-                assert!(facts.layers.is_empty() && covered(&facts).is_empty(), "{center} {radius}");
+                let overlaps = Overlaps::of(&scene([(center, radius), (DVec3::NEG_Y, 1.0)]));
+                assert!(overlaps.layers.is_empty() && covered(&overlaps).is_empty(), "{center} {radius}");
             }
         }
     }
@@ -237,16 +239,19 @@ mod tests {
     #[test]
     fn first_of_copies_remains() {
         let copies = (0..10_000).map(|i| (DVec3::new(f64::from(i % 3), 0.0, -0.0), 1.0 + f64::from(i % 2)));
-        let facts = Facts::of(&scene(copies));
-        assert_eq!(covered(&facts), (6..10_000).collect::<Vec<_>>());
-        assert!(facts.layers.is_empty());
+        let overlaps = Overlaps::of(&scene(copies));
+        assert_eq!(covered(&overlaps), (6..10_000).collect::<Vec<_>>());
+        assert!(overlaps.layers.is_empty());
     }
 
     #[test]
     fn layer_thickness_is_surface_distance() {
         let layer = |a: (f64, f64), b: (f64, f64)| {
-            let facts = Facts::of(&scene([a, b].map(|(x, radius)| (DVec3::new(x, 0.5, 0.5), radius))));
-            facts.layers.first().map(|layer| [layer.thickness, layer.opening].map(|x| (x * 1024.0).round()))
+            let overlaps = Overlaps::of(&scene([a, b].map(|(x, radius)| (DVec3::new(x, 0.5, 0.5), radius))));
+            overlaps
+                .layers
+                .first()
+                .map(|layer| [layer.thickness, layer.opening].map(|x| (x * 1024.0).round()))
         };
         let unit = 1.0 / 1024.0;
         assert_eq!(layer((0.5, 1.0), (0.5, 1.0 - 4.0 * unit)), Some([4.0, 4.0]));
@@ -265,20 +270,25 @@ mod tests {
         let random =
             |i: u32, k: u32| f64::from(crate::kernel::sampling::pcg4d([i, k, 2, 0])[0]) / f64::from(u32::MAX);
         for count in [2, 63, 65, 500] {
-            let has = |facts: &Facts, pair: [u32; 2]| facts.layers.iter().any(|layer| layer.spheres == pair);
+            let has = |overlaps: &Overlaps, pair: [u32; 2]| {
+                overlaps.layers.iter().any(|layer| layer.spheres == pair)
+            };
             let shells = (0..count).map(|i| (DVec3::splat(0.5), 1.0 + 1e-5 * f64::from(i)));
-            let facts = Facts::of(&scene(shells));
-            assert!((1..count).all(|i| has(&facts, [i - 1, i])) && covered(&facts).is_empty(), "{count}");
+            let overlaps = Overlaps::of(&scene(shells));
+            assert!(
+                (1..count).all(|i| has(&overlaps, [i - 1, i])) && covered(&overlaps).is_empty(),
+                "{count}"
+            );
             let place = |i: u32| DVec3::new(random(i, 0), random(i, 1), random(i, 2));
             let balls = (0..2 * count).map(|i| (place(i % count), 1.4 - 1e-7 * f64::from(i / count)));
-            let facts = Facts::of(&scene(balls));
-            assert!((0..count).all(|i| has(&facts, [i, i + count])), "{count}");
+            let overlaps = Overlaps::of(&scene(balls));
+            assert!((0..count).all(|i| has(&overlaps, [i, i + count])), "{count}");
         }
         // Others are between the two of a pair.
         let place = |i: u32| DVec3::new(random(i % 50, 3), random(i % 50, 4), random(i % 50, 5));
         let balls = (0..100).map(|i| (place(i) + DVec3::X * 0.008 * f64::from(i / 50), 1.4));
-        let facts = Facts::of(&scene(balls));
-        let missed = (0..50).filter(|i| facts.layers.iter().all(|layer| layer.spheres != [*i, *i + 50]));
+        let overlaps = Overlaps::of(&scene(balls));
+        let missed = (0..50).filter(|i| overlaps.layers.iter().all(|layer| layer.spheres != [*i, *i + 50]));
         assert_eq!(missed.count(), 0);
     }
 }
