@@ -250,7 +250,7 @@ fn pilot(place: Place, scratch: &mut Scratch, index: usize) {
         for lane in (0..PILOT_WIDE).step_by(LANES).map(|lane| lane.min(PILOT_WIDE - LANES)) {
             let x = PILOT_FIRST + lane;
             let mut s = [[0.0f32; LANES]; 5];
-            let mut add = |[dx, dy]: [isize; 2], weights: &[f32; LANES]| {
+            let mut add = |[dx, dy]: [isize; 2], weights: &[f32]| {
                 let (left, line) = (x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
                 if !place.holds(1, line) {
                     return;
@@ -268,9 +268,9 @@ fn pilot(place: Place, scratch: &mut Scratch, index: usize) {
             add([0, 0], &[1.0; LANES]);
             for (weights, [dx, dy]) in pilot_weights.iter().zip(SHIFTS) {
                 let (row, lane) = (row + PILOT, lane + PILOT);
-                add([dx, dy], weights[row][lane..].first_chunk().unwrap());
+                add([dx, dy], &weights[row][lane..lane + LANES]);
                 let (row, lane) = (row.wrapping_add_signed(-dy), lane.wrapping_add_signed(-dx));
-                add([-dx, -dy], weights[row][lane..].first_chunk().unwrap());
+                add([-dx, -dy], &weights[row][lane..lane + LANES]);
             }
             for i in 0..LANES {
                 let scale = 1.0 / s[3][i];
