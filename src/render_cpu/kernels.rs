@@ -6,9 +6,11 @@
 
 use super::Isa;
 use super::broadcast::BroadcastScene;
+#[cfg(not(target_arch = "wasm32"))]
+use super::lanes::Lanes8;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::Lanes16;
-use super::lanes::{Lanes, Lanes4, Lanes8, Reference, Scalar};
+use super::lanes::{Lanes, Lanes4, Reference, Scalar};
 use super::path::trace;
 use super::work::{TileStats, Work};
 use crate::kernel::parts;
@@ -30,7 +32,7 @@ const GENERAL: u32 = parts::ALL;
 pub fn offered(isa: Isa, lanes: usize, needed: u32) -> u32 {
     let variants: &[u32] = match (isa, lanes == isa.native_lanes()) {
         _ if lanes == 1 => &[GLASS],
-        (Isa::Sse42, true) => &[GLASS],
+        (Isa::Sse42 | Isa::Simd128, true) => &[GLASS],
         // Which of NEON's counts is faster depends on the processor.
         (Isa::Avx2 | Isa::Avx512, true) | (Isa::Neon, _) => &[OPAQUE, GLASS, FINISHED],
         _ => &[],
@@ -84,6 +86,15 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
                 _ => return None,
             }
         }
+        #[cfg(target_arch = "wasm32")]
+        (Isa::Simd128, _) => {
+            let simd = level.as_wasm_simd128()?;
+            match lanes {
+                1 => with_glass(simd, Scalar::<false>, offered),
+                4 => with_glass(simd, Lanes4(simd), offered),
+                _ => return None,
+            }
+        }
         _ => return None,
     })
 }
@@ -102,6 +113,7 @@ fn with_glass<S: Simd, L: Lanes<Real = f32>>(simd: S, lanes: L, offered: u32) ->
 }
 
 /// All variants.
+#[cfg(not(target_arch = "wasm32"))]
 fn specialised<S: Simd, L: Lanes<Real = f32>>(simd: S, lanes: L, offered: u32) -> Kernel<f32> {
     match offered {
         OPAQUE => compiled::<_, _, OPAQUE>(simd, lanes),
