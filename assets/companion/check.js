@@ -31,7 +31,7 @@
       place = box;
       input.click();
     });
-    const how = ["Drop the PPM or PNG that your ray tracer wrote here or anywhere on this page, paste it, or ", choose, ". It does not leave your computer."];
+    const how = ["Drop the PPM or PNG that your ray tracer wrote here or anywhere on this page, or paste it. It does not leave your computer. ", choose];
     box.append(make("p", {}, make("strong", { textContent: `${text} ` }), ...(program ? how : missing())));
     before.after(box);
     boxes.push(box);
@@ -41,11 +41,11 @@
     make("code", { textContent: "assets/package/cross.sh web" }), " builds it. Then make the page again. Or ", install(), " and run ",
     make("code", { textContent: "weekender check mine.ppm" }), ".",
   ];
-  addBox(document.querySelector(".cover .lead"), "What is wrong with my picture?");
-  for (const heading of document.querySelectorAll("h3[id$='-what-a-mistake-looks-like']")) {
+  addBox(document.querySelector(".cover .lead"), "Is your own picture right?");
+  for (const heading of program ? document.querySelectorAll("h3[id$='-what-a-mistake-looks-like']") : []) {
     let last = heading;
     while (last.nextElementSibling?.matches(".mistakes, .mistakes-hint")) last = last.nextElementSibling;
-    addBox(last, "Does yours have one?");
+    addBox(last, "Is yours right?");
   }
 
   // The script is loaded when it is first needed. Pages from a disk cannot fetch, but they can load scripts.
@@ -84,14 +84,17 @@ onmessage = ({ data: [module, args, files] }) => {
     urls.forEach((url) => URL.revokeObjectURL(url));
     urls = [];
   };
-  const show = (said, ...inside) => {
+  // A reader who has gone elsewhere meanwhile stays there.
+  const show = (said, isNew, ...inside) => {
+    const { top, bottom } = panel.getBoundingClientRect(), isSeen = isNew || (bottom > 0 && top < innerHeight);
     heard.textContent = said;
     panel.replaceChildren(...inside);
+    if (isSeen) panel.scrollIntoView({ block: panel.offsetHeight > 0.9 * innerHeight ? "start" : "nearest" });
   };
   const refuse = (...words) => {
     end();
     const text = make("p", {}, ...words);
-    show(text.textContent, make("p", { className: "check-verdict check-bad", textContent: `${file.name}: this picture cannot be checked` }), text, closing());
+    show(text.textContent, false, make("p", { className: "check-verdict check-bad", textContent: `${file.name}: this picture cannot be checked` }), text, closing());
   };
   const closing = () => make("p", { className: "check-buttons" }, button("Another picture", () => input.click()), button("Close", close));
 
@@ -105,10 +108,9 @@ onmessage = ({ data: [module, args, files] }) => {
     const tried = make("p", { className: "check-tried", textContent: "Loading the program" }), seconds = make("span");
     const began = performance.now();
     timer = setInterval(() => (seconds.textContent = `${Math.round((performance.now() - began) / 1000)} s`), 1000);
-    show(`Checking ${file.name}`,
+    show(`Checking ${file.name}`, true,
       make("p", {}, make("strong", { textContent: `Comparing ${file.name} with ${what} and the known mistakes. ` }), seconds), tried,
       make("p", { className: "check-buttons" }, button("Cancel (Esc)", cancel)));
-    panel.scrollIntoView({ block: "nearest" });
     if (!hasSimd()) return refuse("This browser’s WebAssembly has no SIMD, which the program needs. Update the browser, or ", install(), " and run ", make("code", { textContent: "weekender check" }), ".");
     if (file.size > LARGEST) return refuse(`It has ${Math.round(file.size / 1e6)} MB, more than ${LARGEST >> 20} MiB; the book’s 400 x 225 pixels are enough for a check.`);
     const own = file, mine = run, isOther = () => mine !== run;
@@ -179,8 +181,7 @@ onmessage = ({ data: [module, args, files] }) => {
     });
     inside.push(make("label", { className: "check-section" }, "Section ", choice), pictures(found, files));
     inside.push(make("details", {}, make("summary", { textContent: "Figures" }), make("ul", {}, ...found.seen.map((line) => make("li", { textContent: `${line}.` })))), closing());
-    show(said, ...inside);
-    panel.scrollIntoView({ block: "nearest" });
+    show(said, false, ...inside);
   };
 
   // Both pictures with a wipe, and their difference with its scale. Marks show where they differ most.
