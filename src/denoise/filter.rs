@@ -23,13 +23,12 @@ const FIT: usize = 4;
 const FIT_PATCH: usize = 1;
 /// Columns of the tile, and of pixels that reach it by a shift.
 const FIT_WIDE: usize = WIDE + 2 * FIT;
-/// Where the pilot is needed: in the tile, and around it as far as the fit looks.
-const PILOT_TOP: usize = HALO - FIT - FIT_PATCH;
+/// The pilot begins at this column and row: it is needed in the tile, and around it as far as the fit looks.
+const PILOT_FIRST: usize = HALO - FIT - FIT_PATCH;
 const PILOT_HIGH: usize = HIGH + 2 * (FIT + FIT_PATCH);
-const PILOT_LEFT: usize = HALO - 8;
-const PILOT_WIDE: usize = WIDE + 16;
-/// Where the variance is needed.
-const VARIANCE_MARGIN: usize = BOX;
+const PILOT_WIDE: usize = WIDE + 2 * (FIT + FIT_PATCH);
+/// Columns of the pilot, and of pixels that reach it by a shift, and some more to fill vectors.
+const PILOT_WEIGHTS: usize = (PILOT_WIDE + 2 * PILOT).next_multiple_of(LANES);
 
 // The rows of a tile are even or odd like those of the picture.
 const _: () = assert!(HIGH.is_multiple_of(2));
@@ -43,33 +42,20 @@ const RIDGE: f32 = 0.16;
 /// Keeps one over the variance finite. It is far below the variance of any noise that a film can hold, so a dark picture
 /// is filtered like a bright one.
 const LEAST_VARIANCE: f32 = 1e-30;
-/// Lanes of the fit's sums, which stay in registers for a row of shifts.
+/// Lanes of the sums, which stay in registers: of the pilot for all shifts, of the fit for a row of them.
 const LANES: usize = 16;
 
 /// A channel of a tile and its halo.
 type Plane = [[f32; STRIDE]; ROWS];
 
-/// A picture that patches are compared in, the variance of its noise (mean of the channels), and one over it.
-#[derive(Clone, Copy, Zeroable)]
-struct Guide {
-    rgb: [Plane; 3],
-    variance: Plane,
-    inverse: Plane,
-}
+/// Red, green, blue, the variance of their noise (mean of the channels), and one over the variance.
+type Guide = [Plane; 5];
+const VARIANCE: usize = 3;
+const INVERSE: usize = 4;
 
-impl Guide {
-    /// Row `y` of red, green, blue, the variance and one over it.
-    #[inline(always)]
-    fn rows(&self, y: usize) -> [&[f32; STRIDE]; 5] {
-        let [r, g, b] = &self.rgb;
-        [&r[y], &g[y], &b[y], &self.variance[y], &self.inverse[y]]
-    }
-
-    #[inline(always)]
-    fn set_variance(&mut self, [x, y]: [usize; 2], variance: f32) {
-        self.variance[y][x] = variance;
-        self.inverse[y][x] = 1.0 / (variance + LEAST_VARIANCE);
-    }
+#[inline(always)]
+fn inverse(variance: f32) -> f32 {
+    1.0 / (variance + LEAST_VARIANCE)
 }
 
 #[inline(always)]
@@ -123,14 +109,13 @@ pub(super) struct Half<'a> {
 /// What a thread needs to filter a tile.
 #[derive(Clone, Copy, Zeroable)]
 pub(super) struct Scratch {
-    raw: Guide,
+    raw: [Guide; 2],
     smooth: Guide,
     /// Mean squared difference between the halves, for the even and for the odd rows.
     apart: [Plane; 2],
     weights: [[[f32; FIT_WIDE]; HIGH + FIT]; 2 * FIT + 1],
     sums: [[[f32; WIDE]; 15]; HIGH],
-    pilot_weights: [[f32; PILOT_WIDE]; PILOT_HIGH],
-    pilot_sums: [[[f32; PILOT_WIDE]; 5]; PILOT_HIGH],
+    pilot_weights: [[[f32; PILOT_WEIGHTS]; PILOT_HIGH + PILOT]; 4],
     /// Per half, row, channel and column.
     pub filtered: [[[[f32; WIDE]; 3]; HIGH]; 2],
 }
@@ -139,17 +124,33 @@ pub(super) struct Scratch {
 /// that of odd rows and odd rows that of even ones, so one filtered half knows nothing of the other's noise there.
 #[inline(always)]
 pub(super) fn filter(halves: &[Half; 2], place: Place, scratch: &mut Scratch) {
-    difference(halves, place, &mut scratch.apart);
+    for (half, raw) in halves.iter().zip(&mut scratch.raw) {
+        load(half, place, raw);
+    }
+    difference(&scratch.raw, place, &mut scratch.apart);
     for (index, half) in halves.iter().enumerate() {
-        load(half, place, scratch);
         for parity in 0..2 {
+            let [_, _, _, variance, over_variance] = &mut scratch.raw[index];
             for y in 0..ROWS {
                 for x in 0..STRIDE {
-                    scratch.raw.set_variance([x, y], half.share * scratch.apart[parity][y][x]);
+                    variance[y][x] = half.share * scratch.apart[parity][y][x];
+                    over_variance[y][x] = inverse(variance[y][x]);
                 }
             }
-            pilot(place, scratch);
+            pilot(place, scratch, index);
             fit(place, scratch, index, parity);
+        }
+    }
+}
+
+#[inline(always)]
+fn load(half: &Half, place: Place, raw: &mut Guide) {
+    let columns: [usize; STRIDE] = from_fn(|x| place.nearest([x, 0])[0]);
+    for y in 0..ROWS {
+        let line = &half.pixels[place.nearest([0, y])[1] * place.size[0]..][..place.size[0]];
+        for x in 0..STRIDE {
+            let pixel = line[columns[x]];
+            (0..3).for_each(|c| raw[c][y][x] = pixel[c]);
         }
     }
 }
@@ -157,23 +158,17 @@ pub(super) fn filter(halves: &[Half; 2], place: Place, scratch: &mut Scratch) {
 /// The mean squared difference of the halves, averaged over boxes: for even rows over the odd rows of the box, and the
 /// reverse.
 #[inline(always)]
-fn difference(halves: &[Half; 2], place: Place, apart: &mut [Plane; 2]) {
+fn difference([a, b]: &[Guide; 2], place: Place, apart: &mut [Plane; 2]) {
     const N: usize = STRIDE - 2 * BOX;
     let mut across = [[0.0f32; N]; ROWS];
     for (y, across) in across.iter_mut().enumerate() {
-        let squares: [f32; STRIDE] = from_fn(|x| {
-            let [column, row] = place.nearest([x, y]);
-            let index = row * place.size[0] + column;
-            let (a, b) = (halves[0].pixels[index], halves[1].pixels[index]);
-            let squares: [f32; 3] = from_fn(|c| (a[c] - b[c]) * (a[c] - b[c]));
-            squares.iter().sum()
-        });
+        let squares: [f32; STRIDE] = from_fn(|x| (0..3).map(|c| square(a[c][y][x] - b[c][y][x])).sum());
         for shift in 0..=2 * BOX {
             (0..N).for_each(|x| across[x] += squares[x + shift]);
         }
     }
     for (parity, apart) in apart.iter_mut().enumerate() {
-        for (y, apart) in apart.iter_mut().enumerate().take(ROWS - VARIANCE_MARGIN).skip(VARIANCE_MARGIN) {
+        for (y, apart) in apart.iter_mut().enumerate().take(ROWS - BOX).skip(BOX) {
             let (mut sums, mut count) = ([0.0f32; N], 0.0f32);
             for row in y - BOX..=y + BOX {
                 if place.nearest([0, row])[1] % 2 != parity {
@@ -183,17 +178,6 @@ fn difference(halves: &[Half; 2], place: Place, apart: &mut [Plane; 2]) {
             }
             let scale = 1.0 / (3.0 * (2 * BOX + 1) as f32 * f32::max(count, 1.0));
             (0..N).for_each(|x| apart[x + BOX] = sums[x] * scale);
-        }
-    }
-}
-
-#[inline(always)]
-fn load(half: &Half, place: Place, scratch: &mut Scratch) {
-    for y in 0..ROWS {
-        for x in 0..STRIDE {
-            let [column, row] = place.nearest([x, y]);
-            let pixel = half.pixels[row * place.size[0] + column];
-            (0..3).for_each(|c| scratch.raw.rgb[c][y][x] = pixel[c]);
         }
     }
 }
@@ -221,8 +205,8 @@ fn weights<const PATCH: usize, const N: usize, const WIDER: usize>(
         let p = top + row - PATCH;
         let q = p.wrapping_add_signed(dy);
         let (pr, qr) = (from..from + WIDER, from_q..from_q + WIDER);
-        let [a, b, c, v, over_v] = guide.rows(p).map(|row| &row[pr.clone()]);
-        let [aq, bq, cq, vq, over_vq] = guide.rows(q).map(|row| &row[qr.clone()]);
+        let [a, b, c, v, over_v] = from_fn(|i| &guide[i][p][pr.clone()]);
+        let [aq, bq, cq, vq, over_vq] = from_fn(|i| &guide[i][q][qr.clone()]);
         let mut distance = [0.0f32; WIDER];
         for i in 0..WIDER {
             let squares = square(a[i] - aq[i]) + square(b[i] - bq[i]) + square(c[i] - cq[i]);
@@ -243,52 +227,78 @@ fn weights<const PATCH: usize, const N: usize, const WIDER: usize>(
     }
 }
 
-/// Non-local means over few shifts: a first picture, from which the weights of the fit are made, and its variance.
+/// Non-local means over few shifts: a first picture, from which the weights of the fit are made, and its variance. The
+/// weight of two pixels is the same both ways, so each is computed once.
 #[inline(always)]
-fn pilot(place: Place, scratch: &mut Scratch) {
-    let Scratch { raw, smooth, pilot_weights, pilot_sums, .. } = scratch;
-    let inside = place.columns();
-    let corner = [PILOT_LEFT, PILOT_TOP];
-    pilot_sums.fill([[0.0; PILOT_WIDE]; 5]);
-    let reach = PILOT as isize;
-    for (dy, dx) in (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dy, dx))) {
-        weights::<PILOT_PATCH, PILOT_WIDE, { PILOT_WIDE + 8 }>(
+fn pilot(place: Place, scratch: &mut Scratch, index: usize) {
+    const SHIFTS: [[isize; 2]; 4] = [[1, 0], [-1, 1], [0, 1], [1, 1]];
+    let Scratch { raw, smooth, pilot_weights, .. } = scratch;
+    let raw = &raw[index];
+    for (out, shift) in pilot_weights.iter_mut().zip(SHIFTS) {
+        weights::<PILOT_PATCH, PILOT_WEIGHTS, { PILOT_WEIGHTS + 8 }>(
             raw,
-            corner,
-            [dx, dy],
+            [PILOT_FIRST - PILOT, PILOT_FIRST - PILOT],
+            shift,
             PILOT_REACH,
             [0, 1],
-            pilot_weights,
+            out,
         );
-        let left = PILOT_LEFT.wrapping_add_signed(dx);
-        for (row, (sums, weights)) in pilot_sums.iter_mut().zip(pilot_weights.iter()).enumerate() {
-            let q = (PILOT_TOP + row).wrapping_add_signed(dy);
-            if !place.holds(1, q) {
-                continue;
+    }
+    let inside = place.columns();
+    for row in (0..PILOT_HIGH).filter(|row| place.holds(1, PILOT_FIRST + row)) {
+        let y = PILOT_FIRST + row;
+        for lane in (0..PILOT_WIDE).step_by(LANES).map(|lane| lane.min(PILOT_WIDE - LANES)) {
+            let x = PILOT_FIRST + lane;
+            let mut s = [[0.0f32; LANES]; 5];
+            let mut add = |[dx, dy]: [isize; 2], weights: &[f32; LANES]| {
+                let (left, line) = (x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
+                if !place.holds(1, line) {
+                    return;
+                }
+                let inside = &inside[left..left + LANES];
+                let rgb: [&[f32]; 3] = from_fn(|c| &raw[c][line][left..left + LANES]);
+                for i in 0..LANES {
+                    let w = weights[i] * inside[i];
+                    (0..3).for_each(|c| s[c][i] += w * rgb[c][i]);
+                    s[3][i] += w;
+                    s[4][i] += w * w;
+                }
+            };
+            // The weight of a pixel for itself is 1.
+            add([0, 0], &[1.0; LANES]);
+            for (weights, [dx, dy]) in pilot_weights.iter().zip(SHIFTS) {
+                let (row, lane) = (row + PILOT, lane + PILOT);
+                add([dx, dy], weights[row][lane..].first_chunk().unwrap());
+                let (row, lane) = (row.wrapping_add_signed(-dy), lane.wrapping_add_signed(-dx));
+                add([-dx, -dy], weights[row][lane..].first_chunk().unwrap());
             }
-            let inside = &inside[left..left + PILOT_WIDE];
-            let rgb: [&[f32]; 3] = from_fn(|c| &raw.rgb[c][q][left..left + PILOT_WIDE]);
-            for i in 0..PILOT_WIDE {
-                let weight = weights[i] * inside[i];
-                (0..3).for_each(|c| sums[c][i] += weight * rgb[c][i]);
-                sums[3][i] += weight;
-                sums[4][i] += weight * weight;
+            for i in 0..LANES {
+                let scale = 1.0 / s[3][i];
+                (0..3).for_each(|c| smooth[c][y][x + i] = s[c][i] * scale);
+                let variance = raw[VARIANCE][y][x + i] * s[4][i] * scale * scale;
+                smooth[VARIANCE][y][x + i] = variance;
+                smooth[INVERSE][y][x + i] = inverse(variance);
             }
         }
     }
-    for row in 0..PILOT_HIGH {
-        for i in 0..PILOT_WIDE {
-            let at = [PILOT_LEFT + i, PILOT_TOP + row];
-            // Beside the picture, its border is repeated.
-            let [column, line] = place.nearest(at);
-            let from =
-                [column + HALO - place.first[0] - PILOT_LEFT, line + HALO - place.first[1] - PILOT_TOP];
-            let sums = &pilot_sums[from[1]];
-            let scale = 1.0 / sums[3][from[0]];
-            (0..3).for_each(|c| smooth.rgb[c][at[1]][at[0]] = sums[c][from[0]] * scale);
-            let variance = raw.variance[from[1] + PILOT_TOP][from[0] + PILOT_LEFT];
-            smooth.set_variance(at, variance * sums[4][from[0]] * scale * scale);
+    // Beside the picture, its border is repeated.
+    let pilot = |axis: usize, length: usize| {
+        let at = PILOT_FIRST..PILOT_FIRST + length;
+        let [first, last] =
+            [at.start, at.end - 1].map(|at| place.nearest([at; 2])[axis] + HALO - place.first[axis]);
+        (at, first..=last)
+    };
+    let (columns, inner_columns) = pilot(0, PILOT_WIDE);
+    let (rows, inner_rows) = pilot(1, PILOT_HIGH);
+    for plane in smooth {
+        for y in inner_rows.clone() {
+            let (start, end) = (plane[y][*inner_columns.start()], plane[y][*inner_columns.end()]);
+            plane[y][columns.start..*inner_columns.start()].fill(start);
+            plane[y][*inner_columns.end()..columns.end].fill(end);
         }
+        let [start, end] = [*inner_rows.start(), *inner_rows.end()].map(|y| plane[y]);
+        plane[rows.start..*inner_rows.start()].fill(start);
+        plane[*inner_rows.end()..rows.end].fill(end);
     }
 }
 
@@ -297,12 +307,13 @@ fn pilot(place: Place, scratch: &mut Scratch) {
 #[inline(always)]
 fn fit(place: Place, scratch: &mut Scratch, index: usize, parity: usize) {
     let Scratch { raw, smooth, weights: all, sums, filtered, .. } = scratch;
+    let raw = &raw[index];
     let inside = place.columns();
     // The weight of a pixel for itself is 1.
     for (y, sums) in sums.iter_mut().enumerate().skip(parity).step_by(2) {
         *sums = [[0.0; WIDE]; 15];
         sums[0] = [1.0; WIDE];
-        (0..3).for_each(|c| sums[6 + c].copy_from_slice(&raw.rgb[c][HALO + y][HALO..HALO + WIDE]));
+        (0..3).for_each(|c| sums[6 + c].copy_from_slice(&raw[c][HALO + y][HALO..HALO + WIDE]));
     }
     let reach = FIT as isize;
     for dy in 0..=FIT {
@@ -339,7 +350,7 @@ fn fit(place: Place, scratch: &mut Scratch, index: usize, parity: usize) {
                         let left = (HALO + lane).wrapping_add_signed(dx);
                         let (weights, inside) =
                             (&weights[weights_row][from..from + LANES], &inside[left..left + LANES]);
-                        let [r, g, b]: [&[f32]; 3] = from_fn(|c| &raw.rgb[c][line][left..left + LANES]);
+                        let [r, g, b]: [&[f32]; 3] = from_fn(|c| &raw[c][line][left..left + LANES]);
                         for i in 0..LANES {
                             let w = weights[i] * inside[i];
                             let wx = w * x;

@@ -4,7 +4,7 @@ use super::Mine;
 use super::hypothesis::{Compared, Hypothesis, Mistake, Rendered, Rest, Slope, Studio, compare, rough};
 use super::mistakes::applying_to;
 use super::noise::{Grain, grain, is_shared};
-use super::random::{fixed, is_random};
+use super::random::{common, complete, fixed, is_random};
 use super::written::{Seen, Written};
 use crate::job::recipe::Recipe;
 use crate::stages::{Stage, SurfaceRule};
@@ -27,6 +27,9 @@ const REFINED: usize = 6;
 
 /// A mistake that leaves more than this share of the squared error is not rendered in full size.
 const HOPELESS: f64 = 0.7;
+
+/// Nor is one that leaves so many times the squared error of the best, and more than [`NEARLY`].
+const FAR: f64 = 10.0;
 
 /// A mistake is offered as a guess if it leaves less than this share of the right picture's squared error.
 const EXPLAINED: f64 = 0.3;
@@ -65,8 +68,8 @@ const FOUND: f64 = 0.03;
 /// Stages whose difference exceeds the least one by more than this are not judged.
 const NEAR: f64 = 0.006;
 
-/// Least difference between a pixel's neighbours at an edge, linear radiance.
-const EDGE: f64 = 0.02;
+/// Least difference between a pixel's neighbours at an edge, linear radiance. Noise stays below it.
+const EDGE: f64 = 0.05;
 
 /// Difference between small pictures where a mistake changes something, linear radiance.
 const CHANGED: f64 = 0.0015;
@@ -157,8 +160,10 @@ fn judge_of(mine: &Mine, stage: &'static Stage, say: &mut impl FnMut(String)) ->
         say(format!("looking for what all pictures of {} have in common", stage.id));
     }
     let fixed = fixed(mine, stage)?;
-    let found = judge_among(&fixed, &[stage], say)?.context("there is no stage to compare with")?;
-    Ok(Finding { ignored: fixed.ignored.clone(), ..found })
+    let mut found = judge_among(&fixed, &[stage], say)?.context("there is no stage to compare with")?;
+    found.ignored.clone_from(&fixed.ignored);
+    complete(&mut found.right, found.ignored.as_deref(), stage)?;
+    Ok(found)
 }
 
 /// The closest finding among these stages.
@@ -223,7 +228,9 @@ pub fn judge_again(
             known.is_some_and(|known| last.named().is_some_and(|named| named.id == known.id))
         })?;
         if again.is_sure && again.named().is_some() {
-            return Ok(Finding { alike: last.alike.clone(), ignored: fixed.ignored.clone(), ..again });
+            let mut again = Finding { alike: last.alike.clone(), ignored: fixed.ignored.clone(), ..again };
+            complete(&mut again.right, again.ignored.as_deref(), last.stage)?;
+            return Ok(again);
         }
     }
     judge(mine, stage, say)
@@ -246,7 +253,7 @@ struct Candidate {
 
 impl<'a> Trial<'a> {
     fn new(mine: &'a Mine, stage: &'static Stage) -> Result<Self> {
-        let mut studio = Studio::new(stage.recipe(), [mine.width, mine.height])?;
+        let mut studio = Studio::new(common(stage), [mine.width, mine.height])?;
         let hypothesis = Hypothesis::right(studio.recipe());
         let rendered = studio.halves(&hypothesis, 1, FINE[0], None)?;
         let seen = Seen::of(mine, &hypothesis.written, |_, _| 0.0);
@@ -269,9 +276,11 @@ impl<'a> Trial<'a> {
     fn finding_of(mut self, is_wanted: impl Fn(Option<&Mistake>) -> bool) -> Result<Finding> {
         let mut candidates = vec![Candidate { found: self.right.clone(), seen: self.seen.clone() }];
         for (hypothesis, mask) in self.screened(is_wanted)? {
+            // The plain tracer is slow: it takes fewer samples of more pixels.
+            let samples = if hypothesis.steps.is_some() && mask.is_none() { FINE[1] / 2 } else { FINE[1] };
             let rendered = match hypothesis.is_right_before_writing(self.studio.recipe()) {
                 true => self.right.rendered.clone(),
-                false => self.studio.halves(&hypothesis, 1, FINE[1], mask.as_deref())?,
+                false => self.studio.halves(&hypothesis, 1, samples, mask.as_deref())?,
             };
             let halves = [0, 1].map(|half| self.filled(&rendered.halves[half], half));
             let rendered = Rendered { halves, ..rendered };
@@ -413,12 +422,21 @@ impl<'a> Trial<'a> {
                 rest.slopes(&to, false)[0].is_beyond(LEADS_ROUGHLY)
             };
             if misfit < HOPELESS * right_misfit || is_leading || (is_right && self.right.is_noise) {
-                ranked.push((misfit, hypothesis, mask));
+                ranked.push((misfit, is_leading, hypothesis, mask));
             }
         }
         ranked.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
+        let least = ranked.first().map_or(right_misfit, |(misfit, ..)| misfit.min(right_misfit));
+        let is_far = |misfit: f64| misfit > FAR * least.max(0.0) + NEARLY;
+        // What leads on from the right picture, or shows at its edges, does not matter if the picture is far from it.
+        if is_far(right_misfit) {
+            ranked.retain(|(misfit, ..)| !is_far(*misfit));
+            fine.retain(|(hypothesis, _)| !hypothesis.is_fine);
+        } else {
+            ranked.retain(|(misfit, is_leading, ..)| *is_leading || !is_far(*misfit));
+        }
         ranked.truncate(REFINED);
-        let ranked = ranked.into_iter().map(|(_, hypothesis, mask)| (hypothesis, mask));
+        let ranked = ranked.into_iter().map(|(.., hypothesis, mask)| (hypothesis, mask));
         Ok(ranked.chain(fine).collect())
     }
 }
@@ -543,9 +561,13 @@ fn edges(expected: &[[f64; 3]], [width, height]: [usize; 2]) -> Vec<bool> {
         if x == 0 || y == 0 || x + 1 == width || y + 1 == height {
             return false;
         }
+        // The operator of Sobel.
         (0..3).any(|channel| {
-            let step = |by: usize| (expected[index + by][channel] - expected[index - by][channel]).abs();
-            step(1).max(step(width)) >= EDGE
+            let step = |by: usize, along: usize| {
+                let of = |at: usize| expected[at + by][channel] - expected[at - by][channel];
+                (of(index - along) + 2.0 * of(index) + of(index + along)).abs() / 4.0
+            };
+            step(1, width).max(step(width, 1)) >= EDGE
         })
     };
     let edges: Vec<bool> = (0..expected.len()).map(is_edge).collect();
