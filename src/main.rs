@@ -77,7 +77,5 @@ fn run_tool(command: Command) -> Result<ExitCode, Failure> {
 
 #[cfg(target_family = "wasm")]
 fn run_tool(_: Command) -> Result<ExitCode, Failure> {
-    Err(Failure::Input(anyhow::anyhow!(
-        "this build of Weekender neither measures nor makes pages; use that of your system"
-    )))
+    Err(Failure::Input(anyhow::anyhow!("the program for browsers neither measures nor makes pages")))
 }

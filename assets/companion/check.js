@@ -144,14 +144,17 @@ onmessage = ({ data: [module, args, files] }) => {
     heard.textContent = "The check is cancelled";
   };
 
-  // Code stands between backticks, and long code on a line of its own.
-  const withCode = (text) => text.split("`").map((part, index) => (index % 2 ? make("code", { textContent: part, className: part.length > 16 ? "check-line" : "" }) : part));
+  // Code stands between backticks, and long code on a line of its own, which needs no comma after it.
+  const withCode = (text) => text.split("`").map((part, index, all) => {
+    if (index % 2) return make("code", { textContent: part, className: part.length > 16 ? "check-line" : "" });
+    return all[index - 1]?.length > 16 ? part.replace(/^[,; ]+/, "") : part;
+  });
 
   const answer = (found, files) => {
     const said = `${found.verdict}. ${found.explanation}.`;
     const look = { right: "good", cannot_check: "bad" }[found.kind] ?? "warn";
     const inside = [make("p", { className: `check-verdict check-${look}`, textContent: found.verdict }), make("p", { textContent: `${found.explanation}.` })];
-    if (found.change) inside.push(make("p", { className: "check-change" }, make("small", { textContent: "What to change" }), ...withCode(found.change)));
+    if (found.change) inside.push(make("p", { className: "check-change" }, make("small", { textContent: found.kind === "right" ? "Note" : "What to change" }), ...withCode(found.change)));
     for (const { title, remedy } of found.damages.filter(({ title }) => title.toLowerCase() !== found.verdict.toLowerCase())) {
       inside.push(make("p", {}, make("strong", { textContent: "The file, too: " }), ...withCode(`${title}; ${remedy}.`)));
     }

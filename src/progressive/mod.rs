@@ -208,7 +208,7 @@ impl Progressive {
 
     /// Waits until the status changes, at most `timeout`, and returns it.
     pub fn wait(&self, timeout: Duration) -> Status {
-        if self.with_worker_here(Worker::pass) { self.status() } else { self.shared.wait(timeout) }
+        if self.act_here(true) { self.status() } else { self.shared.wait(timeout) }
     }
 
     /// Ends the render after the current pass and returns the film; `None` if there is no film.
@@ -226,13 +226,13 @@ impl Progressive {
     /// Sends a command. A dead thread has reported its end in the status, so a failed send can be ignored.
     fn send(&self, command: RenderCommand) {
         let _ = self.commands.send(command);
-        self.with_worker_here(Worker::obey_all);
+        self.act_here(false);
     }
 
     /// Lets the worker act if it has no thread of its own. Returns whether that is so.
-    fn with_worker_here(&self, act: impl FnOnce(&mut Worker)) -> bool {
-        let here = self.here.as_ref().map(|worker| worker.lock().unwrap_or_else(PoisonError::into_inner));
-        here.map(|mut worker| act(&mut worker)).is_some()
+    fn act_here(&self, renders: bool) -> bool {
+        let worker = self.here.as_ref().map(|worker| worker.lock().unwrap_or_else(PoisonError::into_inner));
+        worker.map(|mut worker| worker.act(renders)).is_some()
     }
 }
 

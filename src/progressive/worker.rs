@@ -71,20 +71,15 @@ impl Worker {
         true
     }
 
-    /// Obeys what has been sent, without a thread of its own.
-    pub(super) fn obey_all(&mut self) {
+    /// Obeys what has been sent, and renders a pass if `renders`, on the caller's thread.
+    pub(super) fn act(&mut self, renders: bool) {
         while let Ok(command) = self.commands.try_recv() {
             self.obey(command);
         }
-        self.show();
-    }
-
-    /// Renders a pass, without a thread of its own.
-    pub(super) fn pass(&mut self) {
-        if self.render.as_ref().is_some_and(Render::is_working) {
+        if renders && self.render.as_ref().is_some_and(Render::is_working) {
             self.step();
-            self.show();
         }
+        self.show();
     }
 
     fn show(&mut self) {

@@ -66,8 +66,7 @@ impl Isa {
     pub fn lane_counts(self) -> &'static [usize] {
         match self {
             Isa::Portable => &[1],
-            Isa::Simd128 => &[1, 4],
-            Isa::Sse42 | Isa::Neon => &[1, 4, 8],
+            Isa::Sse42 | Isa::Neon | Isa::Simd128 => &[1, 4, 8],
             Isa::Avx2 | Isa::Avx512 => &[1, 4, 8, 16],
         }
     }

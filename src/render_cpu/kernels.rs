@@ -6,11 +6,9 @@
 
 use super::Isa;
 use super::broadcast::BroadcastScene;
-#[cfg(not(target_arch = "wasm32"))]
-use super::lanes::Lanes8;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::Lanes16;
-use super::lanes::{Lanes, Lanes4, Reference, Scalar};
+use super::lanes::{Instructions, Lanes, Lanes4, Lanes8, Reference, Scalar};
 use super::path::trace;
 use super::work::{TileStats, Work};
 use crate::kernel::parts;
@@ -51,15 +49,9 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
         }
         (Isa::Portable, 1) => Box::new(|prepared, work| trace::<_, GENERAL>(Scalar::<false>, prepared, work)),
         #[cfg(target_arch = "x86_64")]
-        (Isa::Sse42, _) => {
-            let simd = level.as_sse4_2()?;
-            match lanes {
-                1 => with_glass(simd, Scalar::<false>, offered),
-                4 => with_glass(simd, Lanes4(simd), offered),
-                8 => compiled::<_, _, GENERAL>(simd, Lanes8(simd)),
-                _ => return None,
-            }
-        }
+        (Isa::Sse42, _) => return unfused(level.as_sse4_2()?, lanes, offered),
+        #[cfg(target_arch = "wasm32")]
+        (Isa::Simd128, _) => return unfused(level.as_wasm_simd128()?, lanes, offered),
         #[cfg(target_arch = "x86_64")]
         (Isa::Avx2, _) | (Isa::Avx512, 1 | 4 | 8) => {
             let simd = level.as_avx2()?;
@@ -86,15 +78,17 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
                 _ => return None,
             }
         }
-        #[cfg(target_arch = "wasm32")]
-        (Isa::Simd128, _) => {
-            let simd = level.as_wasm_simd128()?;
-            match lanes {
-                1 => with_glass(simd, Scalar::<false>, offered),
-                4 => with_glass(simd, Lanes4(simd), offered),
-                _ => return None,
-            }
-        }
+        _ => return None,
+    })
+}
+
+/// The kernels of a level with registers of four numbers and without fused multiply-add.
+#[cfg(any(target_arch = "x86_64", target_arch = "wasm32"))]
+fn unfused<S: Instructions>(simd: S, lanes: usize, offered: u32) -> Option<Kernel<f32>> {
+    Some(match lanes {
+        1 => with_glass(simd, Scalar::<false>, offered),
+        4 => with_glass(simd, Lanes4(simd), offered),
+        8 => compiled::<_, _, GENERAL>(simd, Lanes8(simd)),
         _ => return None,
     })
 }

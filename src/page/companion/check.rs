@@ -21,27 +21,19 @@ pub fn find() -> Option<PathBuf> {
     PLACES.iter().map(|place| directory.join(place).join(FILE)).find(|path| path.is_file())
 }
 
-/// Copies the script beside the page, if it is there and new.
+/// Copies the script beside the page.
 pub fn copy(out: &Path) -> Result<()> {
     let Some(from) = find() else { return Ok(()) };
     let script = fs::read(&from).with_context(|| format!("cannot read {}", from.display()))?;
-    let to = out.join(FILE);
-    if fs::read(&to).is_ok_and(|old| old == script) {
-        return Ok(());
-    }
-    Ok(replace_file(&to, |writer| writer.write_all(&script))?)
+    Ok(replace_file(&out.join(FILE), |writer| writer.write_all(&script))?)
 }
 
 /// What the page's script reads, as JSON that is safe inside a `<script>` element.
 pub fn data() -> String {
-    let stages = Stage::ALL.iter().map(|stage| [stage.id, stage.section, stage.title]);
+    let stages: Vec<_> = Stage::ALL.iter().map(|stage| [stage.id, stage.section, stage.title]).collect();
     let scale = HeatScale::DISPLAYED;
     let colours: Vec<[u8; 3]> = (0..=6).map(|step| colour_at(f64::from(step) / 6.0)).collect();
     let labels: Vec<String> = scale.marks().into_iter().map(|(_, label)| label).collect();
-    let data = json!({
-        "program": find().map(|_| FILE),
-        "stages": stages.collect::<Vec<_>>(),
-        "scale": { "title": scale.title, "colours": colours, "labels": labels },
-    });
-    data.to_string().replace("</", "<\\/")
+    let scale = json!({ "title": scale.title, "colours": colours, "labels": labels });
+    json!({ "program": find().map(|_| FILE), "stages": stages, "scale": scale }).to_string().replace("</", "<\\/")
 }
