@@ -114,7 +114,10 @@ impl Book {
                     ball(-1.0, 0.0, -1.0, 0.5, Material::Metal(DVec3::splat(0.8), 0.3));
                 } else {
                     ball(-1.0, 0.0, -1.0, 0.5, Material::Dielectric(1.5));
-                    ball(-1.0, 0.0, -1.0, 0.4, Material::Dielectric(1.0 / 1.5));
+                    let inner = if mistake == "hollow-index" { 1.5 } else { 1.0 / 1.5 };
+                    if mistake != "hollow-missing" {
+                        ball(-1.0, 0.0, -1.0, 0.4, Material::Dielectric(inner));
+                    }
                 }
                 ball(1.0, 0.0, -1.0, 0.5, Material::Metal(DVec3::new(0.8, 0.6, 0.2), 1.0));
             }
@@ -129,7 +132,7 @@ impl Book {
             vfov: if is_lens { 20.0 } else { 90.0 },
             defocus_angle: if is_lens { 10.0 } else { 0.0 },
             focus_dist: if is_lens && mistake != "focus-distance-one" { 3.4 } else { 1.0 },
-            max_depth: 50,
+            max_depth: if mistake == "bounce-limit" { 4 } else { 50 },
         }
     }
 
@@ -146,6 +149,7 @@ impl Book {
             return None;
         }
         let sqrtd = discriminant.sqrt();
+        let h = if self.makes("half-b-sign") { -h } else { h };
         let mut root = (h - sqrtd) / a;
         if root <= t_min || t_max <= root {
             root = (h + sqrtd) / a;
@@ -156,7 +160,7 @@ impl Book {
         let p = r.orig + r.dir * root;
         let scale = if self.makes("normal-not-unit") { 1.0 } else { 1.0 / sphere.radius };
         let outward = (p - sphere.center) * scale;
-        let front_face = r.dir.dot(outward) < 0.0;
+        let front_face = self.makes("normals-not-flipped") || r.dir.dot(outward) < 0.0;
         let normal = if front_face { outward } else { -outward };
         Some(HitRecord { p, normal, t: root, front_face, mat: sphere.mat })
     }
@@ -178,17 +182,21 @@ impl Book {
     fn scatter(&self, r: &Ray, rec: &HitRecord, rng: &mut Random) -> Option<(DVec3, DVec3)> {
         match rec.mat {
             Material::Lambertian(albedo) => {
-                let uniform = self.stage == "diffuse" || self.makes("hemisphere");
+                let uniform = match self.stage {
+                    "diffuse" => !self.makes("lambertian-early"),
+                    _ => self.makes("hemisphere"),
+                };
                 let direction = if uniform {
                     let v = rng.unit_vector();
                     if v.dot(rec.normal) > 0.0 { v } else { -v }
                 } else if self.makes("point-in-sphere") {
                     rec.normal + rng.in_unit_sphere()
                 } else {
-                    let d = rec.normal + rng.unit_vector();
+                    let far = if self.makes("narrow-lobe") { 0.6 } else { 1.0 };
+                    let d = rec.normal + rng.unit_vector() * far;
                     if d.abs().max_element() < 1e-8 { rec.normal } else { d }
                 };
-                Some((albedo, direction))
+                Some((if self.makes("albedo-squared") { albedo * albedo } else { albedo }, direction))
             }
             Material::Metal(albedo, fuzz) => {
                 let mut reflected = reflect(r.dir, rec.normal);
@@ -203,13 +211,14 @@ impl Book {
             Material::Dielectric(index) => {
                 let is_front = rec.front_face != self.makes("index-inverted");
                 let ri = if is_front { 1.0 / index } else { index };
-                let unit = r.dir.normalize();
+                let unit = if self.makes("refract-unnormalised") { r.dir } else { r.dir.normalize() };
                 let cos_theta = (-unit).dot(rec.normal).min(1.0);
                 let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
                 let always = self.makes("always-refract");
                 let r0 = ((1.0 - ri) / (1.0 + ri)).powi(2);
                 let reflectance = r0 + (1.0 - r0) * (1.0 - cos_theta).powi(5);
-                let reflects = !always && (ri * sin_theta > 1.0 || reflectance > rng.double());
+                let by_chance = !self.makes("schlick-missing") && reflectance > rng.double();
+                let reflects = !always && (ri * sin_theta > 1.0 || by_chance);
                 let direction = if reflects != self.makes("glass-swapped") {
                     reflect(unit, rec.normal)
                 } else {
@@ -237,7 +246,13 @@ impl Book {
                 None => DVec3::ZERO,
             };
         }
-        let a = 0.5 * (r.dir.normalize().y + 1.0);
+        let y = r.dir.normalize().y;
+        let a = match self.mistake {
+            "sky-reversed" => 0.5 * (1.0 - y),
+            "sky-mirrored" => y.abs(),
+            "sky-plain" => 0.0,
+            _ => 0.5 * (y + 1.0),
+        };
         DVec3::ONE.lerp(DVec3::new(0.5, 0.7, 1.0), a)
     }
 
@@ -247,13 +262,18 @@ impl Book {
         let theta =
             if self.makes("vfov-radians") { self.vfov } else { self.vfov * std::f64::consts::PI / 180.0 };
         let viewport_height = 2.0 * (theta / 2.0).tan() * self.focus_dist;
-        let aspect = f64::from(width) / f64::from(height);
+        let aspect = match self.mistake {
+            "integer-aspect" => f64::from(width / height),
+            _ => f64::from(width) / f64::from(height),
+        };
         let w = (self.look_from - self.look_at).normalize();
         let u = DVec3::Y.cross(w).normalize();
         let v = w.cross(u);
         let viewport_u = u * (viewport_height * aspect);
         let viewport_v = v * -viewport_height;
-        let (delta_u, delta_v) = (viewport_u / f64::from(width), viewport_v / f64::from(height));
+        let less = if self.makes("width-less-one") { 1 } else { 0 };
+        let (delta_u, delta_v) =
+            (viewport_u / f64::from(width - less), viewport_v / f64::from(height - less));
         let corner = self.look_from - w * self.focus_dist - viewport_u * 0.5 - viewport_v * 0.5;
         let half = if self.makes("half-pixel-up") { 0.0 } else { 0.5 };
         let pixel00 = corner + (delta_u + delta_v) * half;
@@ -267,10 +287,10 @@ impl Book {
                 if self.makes("same-seed") {
                     rng = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
                 }
-                let mut sum = DVec3::ZERO;
+                let (mut sum, shift) = (DVec3::ZERO, if self.makes("half-pixel-down") { 0.0 } else { 0.5 });
                 for _ in 0..samples {
                     let (x, y) =
-                        if is_jittered { (rng.double() - 0.5, rng.double() - 0.5) } else { (0.0, 0.0) };
+                        if is_jittered { (rng.double() - shift, rng.double() - shift) } else { (0.0, 0.0) };
                     let pixel = pixel00 + delta_u * (f64::from(i) + x) + delta_v * (f64::from(j) + y);
                     let on_lens = if self.defocus_angle <= 0.0 {
                         self.look_from
@@ -280,19 +300,29 @@ impl Book {
                     };
                     let ray = match self.mistake {
                         "lens-origin" => Ray { orig: self.look_from, dir: pixel - on_lens },
+                        "lens-centre" => Ray { orig: self.look_from, dir: pixel - self.look_from },
                         "lens-aim" => Ray { orig: on_lens, dir: pixel - self.look_from },
                         _ => Ray { orig: on_lens, dir: pixel - on_lens },
                     };
                     sum += self.ray_color(&ray, self.max_depth, &mut rng);
                 }
-                let mean = sum / f64::from(samples);
+                let mut mean = sum / f64::from(samples);
+                match self.mistake {
+                    "tone-mapped" => mean /= DVec3::ONE + mean,
+                    "vignette" => mean *= 1.0 - 0.3 * (f64::from(i) / f64::from(width) - 0.5).abs(),
+                    "blue-lost" => mean.z *= 0.9,
+                    _ => {}
+                }
                 picture.push(mean.to_array().map(|x| self.byte(x, is_gamma)));
             }
         }
-        if self.makes("flipped-rows") {
-            return picture.chunks(width as usize).rev().flatten().copied().collect();
+        let rows = picture.chunks(width as usize);
+        match self.mistake {
+            "flipped-rows" => rows.rev().flatten().copied().collect(),
+            "mirrored-columns" => rows.flat_map(|row| row.iter().rev()).copied().collect(),
+            "swapped-channels" => picture.iter().map(|[r, g, b]| [*b, *g, *r]).collect(),
+            _ => picture,
         }
-        picture
     }
 
     fn byte(&self, linear: f64, is_gamma: bool) -> u8 {
@@ -300,6 +330,8 @@ impl Book {
         let mut x = if is_gamma { gamma(linear) } else { linear };
         match self.mistake {
             "gamma-twice" => x = gamma(x),
+            "no-gamma" => x = linear,
+            "gamma-early" => x = gamma(linear),
             "gamma-2.2" => x = linear.max(0.0).powf(1.0 / 2.2),
             "gamma-srgb" if linear <= 0.003_130_8 => x = 12.92 * linear,
             "gamma-srgb" => x = 1.055 * linear.powf(1.0 / 2.4) - 0.055,
