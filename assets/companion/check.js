@@ -50,14 +50,17 @@
 
   // The script is loaded when it is first needed. Pages from a disk cannot fetch, but they can load scripts.
   let loaded;
-  const load = () => (loaded ??= new Promise((resolve, reject) => {
-    const script = make("script", { src: program });
-    script.addEventListener("error", () => reject(new Error("missing")));
-    script.addEventListener("load", async () => {
-      const { host, module } = globalThis.weekenderProgram;
-      const packed = new Blob([Uint8Array.from(atob(module), (letter) => letter.charCodeAt(0))]);
-      const bytes = await new Response(packed.stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
-      const source = `${host}
+  const load = async () => {
+    await new Promise((resolve, reject) => {
+      const script = make("script", { src: program });
+      script.addEventListener("load", resolve);
+      script.addEventListener("error", () => reject(new Error("missing")));
+      document.head.append(script);
+    });
+    const { host, module } = globalThis.weekenderProgram;
+    const packed = new Blob([Uint8Array.from(atob(module), (letter) => letter.charCodeAt(0))]);
+    const bytes = await new Response(packed.stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+    const source = `${host}
 onmessage = ({ data: [module, args, files] }) => {
   try {
     postMessage({ result: weekender(module, args, files, (line) => postMessage({ line })) });
@@ -65,10 +68,8 @@ onmessage = ({ data: [module, args, files] }) => {
     postMessage({ failure: String(error) });
   }
 };`;
-      resolve({ module: await WebAssembly.compile(bytes), source: URL.createObjectURL(new Blob([source], { type: "text/javascript" })) });
-    });
-    document.head.append(script);
-  }));
+    return { module: await WebAssembly.compile(bytes), source: URL.createObjectURL(new Blob([source], { type: "text/javascript" })) };
+  };
   // A module with one SIMD instruction.
   const hasSimd = () => globalThis.DecompressionStream && WebAssembly.validate(Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11));
 
@@ -115,9 +116,10 @@ onmessage = ({ data: [module, args, files] }) => {
     if (file.size > LARGEST) return refuse(`It has ${Math.round(file.size / 1e6)} MB, more than ${LARGEST >> 20} MiB; the book’s 400 x 225 pixels are enough for a check.`);
     const own = file, mine = run, isOther = () => mine !== run;
     try {
-      const [{ module, source }, data] = await Promise.all([load(), own.arrayBuffer()]);
+      const [{ module, source }, data] = await Promise.all([(loaded ??= load()), own.arrayBuffer()]);
       if (isOther()) return;
       worker = new Worker(source);
+      worker.addEventListener("error", ({ message }) => refuse(`The program cannot be started: ${message}`));
       const lines = [];
       worker.addEventListener("message", ({ data: { line, result, failure } }) => {
         if (line !== undefined) {
@@ -128,13 +130,14 @@ onmessage = ({ data: [module, args, files] }) => {
           answer(JSON.parse(new TextDecoder().decode(result.files[FINDING])), result.files);
         } else {
           const reason = lines.find((text) => text.startsWith("error: "))?.slice(7) ?? `The program has failed: ${lines.at(-1) ?? failure}`;
-          refuse(`${reason[0].toUpperCase()}${reason.slice(1)}.`);
+          refuse(`${reason.startsWith(own.name) ? reason : reason[0].toUpperCase() + reason.slice(1)}.`);
         }
       });
       const name = own.name.replaceAll("/", "_").replace(/^-?$/, "picture");
       const chosen = stage ? ["--stage", stage] : [];
       worker.postMessage([module, ["check", "--progress", "on", "--out", FOLDER, "--json", FINDING, ...chosen, "--", name], { [name]: new Uint8Array(data) }]);
     } catch (error) {
+      loaded = undefined;
       if (!isOther()) refuse(...(error.message === "missing" ? missing() : [`${error}`]));
     }
   };

@@ -22,15 +22,15 @@ const open = async (url, options = {}) => {
   await page.goto(url);
   return page;
 };
-const drop = async (page, path, where) => {
+const transfer = (page, path) => {
   const file = [basename(path), readFileSync(path).toString("base64")];
-  const dataTransfer = await page.evaluateHandle(([name, data]) => {
+  return page.evaluateHandle(([name, data]) => {
     const all = new DataTransfer();
     all.items.add(new File([Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0))], name));
     return all;
   }, file);
-  await page.locator(where).first().dispatchEvent("drop", { dataTransfer });
 };
+const drop = async (page, path, where) => page.locator(where).first().dispatchEvent("drop", { dataTransfer: await transfer(page, path) });
 const answered = async (page) => {
   await page.locator(".check-verdict").waitFor({ timeout: 300_000 });
   return page.evaluate(async () => {
@@ -98,6 +98,23 @@ await once(server, "listening");
 const served = await open(`http://127.0.0.1:${server.address().port}/index.html`);
 await drop(served, right, ".cover .check-box");
 seen.served = (await answered(served)).verdict;
+await served.getByRole("button", { name: "Close" }).click();
+await served.evaluate((clipboardData) => document.body.dispatchEvent(new ClipboardEvent("paste", { clipboardData, bubbles: true })), await transfer(served, right));
+expect((await answered(served)).verdict === seen.served, "a pasted picture has another verdict");
+
+// Without SIMD, and without the program, it says so.
+const lacks = {
+  SIMD: () => served.evaluate(() => (WebAssembly.validate = () => false)),
+  "check.js": () => served.route("**/check.js", (route) => route.fulfill({ status: 404 })),
+};
+for (const [what, remove] of Object.entries(lacks)) {
+  await served.reload();
+  await remove();
+  await drop(served, right, ".cover .check-box");
+  await served.locator(".check-bad").waitFor();
+  expect((await served.locator(".check").textContent()).includes(what), `nothing is said of ${what}`);
+}
+seen.console = seen.console.filter((text) => !text.includes("404"));
 server.close();
 
 // Without scripts, there is nothing of it.
