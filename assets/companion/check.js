@@ -128,6 +128,8 @@ onmessage = ({ data: [module, args, files] }) => {
         } else if (result?.files[FINDING]) {
           end();
           answer(JSON.parse(new TextDecoder().decode(result.files[FINDING])), result.files);
+        } else if (lines.some((text) => text.startsWith("memory allocation of"))) {
+          refuse("It has more pixels than the memory of a page allows. Render it at 400 x 225, which is enough for a check.");
         } else {
           const reason = lines.find((text) => text.startsWith("error: "))?.slice(7) ?? `The program has failed: ${lines.at(-1) ?? failure}`;
           refuse(`${reason.startsWith(own.name) ? reason : reason[0].toUpperCase() + reason.slice(1)}.`);

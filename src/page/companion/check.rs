@@ -35,5 +35,7 @@ pub fn data() -> String {
     let colours: Vec<[u8; 3]> = (0..=6).map(|step| colour_at(f64::from(step) / 6.0)).collect();
     let labels: Vec<String> = scale.marks().into_iter().map(|(_, label)| label).collect();
     let scale = json!({ "title": scale.title, "colours": colours, "labels": labels });
-    json!({ "program": find().map(|_| FILE), "stages": stages, "scale": scale }).to_string().replace("</", "<\\/")
+    json!({ "program": find().map(|_| FILE), "stages": stages, "scale": scale })
+        .to_string()
+        .replace("</", "<\\/")
 }
