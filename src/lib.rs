@@ -25,10 +25,12 @@ pub mod job;
 #[doc(hidden)]
 pub mod kernel;
 #[doc(hidden)]
+#[cfg(not(target_family = "wasm"))]
 pub mod measure;
 #[doc(hidden)]
 pub mod numbers;
 #[doc(hidden)]
+#[cfg(not(target_family = "wasm"))]
 pub mod page;
 #[doc(hidden)]
 pub mod pictures;

@@ -5,8 +5,6 @@
 use std::process::ExitCode;
 use weekender::batch::{self, info, merge};
 use weekender::cli::{self, Command, Request, terminal};
-use weekender::measure::{bench, report, stress};
-use weekender::page::{companion, gallery};
 use weekender::pictures::{check, compare, diff};
 use weekender::system::failure::Failure;
 use weekender::system::{interrupt, journal};
@@ -50,18 +48,34 @@ fn run() -> Result<ExitCode, Failure> {
         Request::Frames(options) => batch::render_frames(*options),
         Request::Batch(options) => batch::run(*options),
         Request::Command(command) => match command {
-            Command::Bench(options) => bench::run(&options),
             Command::Plan(options) => batch::plan(&options),
             Command::RenderPart(options) => batch::render_part(*options),
             Command::Merge(options) => merge::run(&options),
             Command::Info(options) => info::run(&options),
             Command::Diff(options) => diff::run(&options).map_err(Failure::Input),
             Command::Compare(options) => compare::run(&options).map_err(Failure::Input),
-            Command::Report(options) => report::run(&options),
-            Command::Stress(options) => stress::run(&options),
-            Command::Companion(options) => companion::run(&options),
-            Command::Gallery(options) => gallery::run(&options),
             Command::Check(options) => check::run(&options).map_err(Failure::Input),
+            command => run_tool(command),
         },
     }
+}
+
+/// Measurements and pages, which a program inside a page leaves out.
+#[cfg(not(target_family = "wasm"))]
+fn run_tool(command: Command) -> Result<ExitCode, Failure> {
+    use weekender::measure::{bench, report, stress};
+    use weekender::page::{companion, gallery};
+    match command {
+        Command::Bench(options) => bench::run(&options),
+        Command::Report(options) => report::run(&options),
+        Command::Stress(options) => stress::run(&options),
+        Command::Companion(options) => companion::run(&options),
+        Command::Gallery(options) => gallery::run(&options),
+        _ => unreachable!("run() has the others"),
+    }
+}
+
+#[cfg(target_family = "wasm")]
+fn run_tool(_: Command) -> Result<ExitCode, Failure> {
+    Err(Failure::Input(anyhow::anyhow!("the program for browsers neither measures nor makes pages")))
 }

@@ -4,6 +4,7 @@
 #   assets/package/cross.sh arm        an archive for 64-bit ARM Linux, without the window
 #   assets/package/cross.sh macos      a bundle for macOS: all but the program, which is type-checked only, because
 #                                      linking needs Apple's libraries
+#   assets/package/cross.sh web        check.js: the program for browsers in a script, for `weekender companion`
 #   assets/package/cross.sh check      type-checks Windows and macOS; build-windows and build-arm make the programs alone
 # On a Mac, `macos` builds the program, too. Where rustup cannot add a target, its standard library is built from
 # Debian's sources. The archives need cargo-about.
@@ -16,6 +17,7 @@ version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 windows=x86_64-pc-windows-gnu
 arm=aarch64-unknown-linux-gnu
 mac=aarch64-apple-darwin
+web=wasm32-wasip1
 export CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER=aarch64-linux-gnu-gcc
 
 need() { # need PROGRAM PACKAGE...
@@ -38,7 +40,8 @@ cargo_for() {
 # texts FOLDER TARGET ARGUMENTS...: what every archive has
 texts() {
     mkdir -p "$1"
-    cp README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE "$1"
+    "$self" web
+    cp "$target/check.js" README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE "$1"
     cargo about generate --locked --offline --fail --target "$2" "${@:3}" --config assets/package/about.toml \
         --output-file "$1/LICENSES-OF-LIBRARIES.txt" assets/package/about.hbs
 }
@@ -75,6 +78,36 @@ for what in "${@:-check}"; do
         cp "$target/$arm/release/weekender" "$target/$name"
         tar --sort=name --owner=0 --group=0 --numeric-owner -C "$target" -czf "$target/$name.tar.gz" "$name"
         ;;
+    web)
+        # Flags for this processor would replace these, and the linker cannot optimise what is built incrementally.
+        unset RUSTFLAGS
+        export CARGO_INCREMENTAL=0
+        export CARGO_TARGET_WASM32_WASIP1_RUSTFLAGS='-C target-feature=+simd128'
+        build=(build --locked --target $web --target-dir "$target" --profile web --no-default-features --bin weekender)
+        if rustup target add $web > /dev/null 2>&1; then
+            cargo "${build[@]}"
+        else
+            need wasm-ld lld
+            need /usr/bin/cargo rustc-web cargo-web rust-web-src wasi-libc
+            mkdir -p "$target"
+            # The functions that Debian's C library lacks.
+            PATH=/usr/bin:$PATH rustc --target $web --edition 2024 --crate-type rlib --emit obj -C panic=abort \
+                -o "$target/wasi.o" assets/package/wasi.rs
+            libc=/usr/lib/wasm32-wasi
+            CARGO_TARGET_WASM32_WASIP1_RUSTFLAGS+=" -C linker=wasm-ld -C linker-flavor=wasm-ld -C link-self-contained=no"
+            CARGO_TARGET_WASM32_WASIP1_RUSTFLAGS+=" -C link-arg=$libc/crt1-command.o -C link-arg=$(realpath "$target")/wasi.o -L $libc"
+            PATH=/usr/bin:$PATH RUSTC_BOOTSTRAP=1 cargo "${build[@]}" -Zbuild-std=std,panic_abort
+        fi
+        {
+            echo 'globalThis.weekenderProgram = { host:'
+            cat assets/web/program.js
+            printf ', module: "'
+            gzip -9nc "$target/$web/web/weekender.wasm" | base64 | tr -d '\n'
+            echo '" };'
+        } > "$target/check.js.$$"
+        mv "$target/check.js.$$" "$target/check.js"
+        ls -l "$target/check.js"
+        ;;
     macos)
         bundle=$target/Weekender.app/Contents
         rm -rf "$target/Weekender.app"
@@ -91,7 +124,7 @@ for what in "${@:-check}"; do
         fi
         ;;
     *)
-        echo "$what is not known: windows, arm, macos or check" >&2
+        echo "$what is not known: windows, arm, web, macos or check" >&2
         exit 2
         ;;
     esac

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds what is released, in target/package: an archive with program, manual pages, completions, desktop entry, icons
-# and licences, and a Debian package of the same files. Needs cargo-about and cargo-deb.
+# Builds what is released, in target/package: an archive with program, the program for browsers, manual pages, completions,
+# desktop entry, icons and licences, and a Debian package of the same files. Needs cargo-about and cargo-deb.
 #   assets/package/release.sh                          the full program
 #   assets/package/release.sh --no-default-features    without the window: the archive only
 set -euo pipefail
@@ -29,7 +29,8 @@ cargo run --release --locked "${features[@]}" --example package -- "$package/tex
 cargo about generate --locked --offline --fail --target "$target" "${features[@]}" \
     --config assets/package/about.toml --output-file "$package/texts/LICENSES-OF-LIBRARIES.txt" assets/package/about.hbs
 
-cp target/release/weekender README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE "$root"
+assets/package/cross.sh web
+cp target/release/weekender target/cross/check.js README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE "$root"
 cp -r "$package/texts/." "$root"
 if [ ${#features[@]} -eq 0 ]; then
     cp -r assets/package/icons assets/package/weekender.desktop assets/package/weekender.metainfo.xml "$root"

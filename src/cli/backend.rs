@@ -29,7 +29,7 @@ struct BackendFlags {
     /// Lanes of the CPU's packets: auto, off (1), 4, 8, 16
     #[arg(long, value_name = "LANES", value_parser = parse_simd, default_value = "auto")]
     simd: Auto<usize>,
-    /// Instruction level of the CPU, for tests and benchmarks: auto, portable, sse4.2, avx2, avx512, neon
+    /// Instruction level of the CPU, for tests and benchmarks: auto, portable, sse4.2, avx2, avx512, neon, simd128
     #[arg(long, value_name = "LEVEL", value_parser = parse_isa, default_value = "auto")]
     isa: Auto<Isa>,
     /// CPU threads, 1 to 1024 [default: one per core]

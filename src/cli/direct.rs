@@ -95,6 +95,9 @@ pub struct CheckOptions {
     /// Write the finding as JSON, with --watch or several pictures one line each; - for standard output
     #[arg(long, value_name = "FILE|-")]
     pub json: Option<PathBuf>,
+    /// Show on standard error what is being tried; auto: if it is a terminal
+    #[arg(long, value_enum, default_value = "auto")]
+    pub progress: ProgressChoice,
 }
 
 impl CheckOptions {

@@ -12,7 +12,7 @@ use serde::Serialize;
 use std::io::{IsTerminal, stderr};
 use std::path::Path;
 use std::time::{Duration, Instant};
-use terminal_size::{Width, terminal_size_of};
+use terminal_size::{Width, terminal_size};
 
 /// Prints text to standard output, or to standard error if JSON goes to standard output.
 ///
@@ -106,7 +106,7 @@ impl Display {
     pub fn announce(&mut self, position: u64, text: impl FnOnce() -> String) {
         match self {
             Display::Bar(bar, template) => {
-                let is_narrow = terminal_size_of(stderr()).is_some_and(|(Width(columns), _)| columns < WIDE);
+                let is_narrow = terminal_size().is_some_and(|(Width(columns), _)| columns < WIDE);
                 let template = if is_narrow { "{wide_msg}" } else { *template };
                 if let Ok(style) = ProgressStyle::with_template(template) {
                     bar.set_style(style.progress_chars("=> "));

@@ -42,7 +42,7 @@ pub struct WideBvh {
     /// The sphere index at each place in leaf order.
     pub order: Vec<u32>,
     /// Nodes on the longest path from the root to a leaf.
-    depth: usize,
+    pub depth: usize,
 }
 
 impl WideBvh {

@@ -24,13 +24,14 @@ pub use view::{ReferenceMeans, View, luminance, standard_error};
 use crate::backends::{self, BackendChoice};
 use crate::film::Film;
 use crate::job::render::{RenderJob, Renderer};
+use crate::system::threads;
 use render::Cancel;
 use shared::Shared;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{self, Sender};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 use worker::{RenderCommand, Worker};
@@ -63,6 +64,8 @@ pub struct Progressive {
     run: u64,
     cancel: Arc<Cancel>,
     thread: Option<JoinHandle<()>>,
+    /// The worker without a thread of its own: it obeys at once, and whoever waits renders a pass.
+    here: Option<Mutex<Worker>>,
 }
 
 impl Progressive {
@@ -79,17 +82,26 @@ impl Progressive {
     /// # Errors
     /// If the system cannot start a thread.
     pub fn with_factory(factory: Factory) -> io::Result<Self> {
+        Self::with_worker(factory, threads::EXIST)
+    }
+
+    fn with_worker(factory: Factory, has_thread: bool) -> io::Result<Self> {
         let (commands, receiver) = mpsc::channel();
         let shared = Arc::new(Shared::default());
         let readers = Arc::clone(&shared);
         let mut worker = Worker::new(receiver, Arc::clone(&shared), factory);
+        if !has_thread {
+            let here = Some(Mutex::new(worker));
+            return Ok(Progressive { commands, shared, run: 0, cancel: Arc::default(), thread: None, here });
+        }
         let work = move || {
             if catch_unwind(AssertUnwindSafe(|| worker.run())).is_err() {
                 readers.died();
             }
         };
         let thread = thread::Builder::new().name("render".to_owned()).spawn(work)?;
-        Ok(Progressive { commands, shared, run: 0, cancel: Arc::default(), thread: Some(thread) })
+        let thread = Some(thread);
+        Ok(Progressive { commands, shared, run: 0, cancel: Arc::default(), thread, here: None })
     }
 
     /// Starts a render. One in progress is abandoned in the middle of its pass.
@@ -196,7 +208,7 @@ impl Progressive {
 
     /// Waits until the status changes, at most `timeout`, and returns it.
     pub fn wait(&self, timeout: Duration) -> Status {
-        self.shared.wait(timeout)
+        if self.act_here(true) { self.status() } else { self.shared.wait(timeout) }
     }
 
     /// Ends the render after the current pass and returns the film; `None` if there is no film.
@@ -214,6 +226,13 @@ impl Progressive {
     /// Sends a command. A dead thread has reported its end in the status, so a failed send can be ignored.
     fn send(&self, command: RenderCommand) {
         let _ = self.commands.send(command);
+        self.act_here(false);
+    }
+
+    /// Lets the worker act if it has no thread of its own. Returns whether that is so.
+    fn act_here(&self, renders: bool) -> bool {
+        let worker = self.here.as_ref().map(|worker| worker.lock().unwrap_or_else(PoisonError::into_inner));
+        worker.map(|mut worker| worker.act(renders)).is_some()
     }
 }
 
@@ -224,5 +243,36 @@ impl Drop for Progressive {
             self.send(RenderCommand::Finish);
             let _ = thread.join();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::recipe::Recipe;
+
+    #[test]
+    fn a_render_without_a_thread_gives_the_same_film() {
+        let mut recipe = Recipe::find("three-spheres").unwrap();
+        (recipe.settings.width, recipe.settings.height) = (12, 7);
+        let backend = BackendChoice::Reference { threads: Some(1) };
+        let render = |has_thread: bool, stops: bool| {
+            let plan = Plan::samples(64);
+            let request = RenderRequest::new(recipe.job().unwrap(), backend.clone(), plan);
+            let mut progressive = Progressive::with_worker(Box::new(backends::create), has_thread).unwrap();
+            let status = progressive.watch(request, |progressive, status| {
+                if stops && status.samples_per_pixel > 0 {
+                    progressive.stop();
+                }
+            });
+            (status.phase, progressive.finish().unwrap())
+        };
+        let done = Phase::Done(EndReason::Samples);
+        let (phase, film) = render(false, false);
+        assert_eq!(phase, done);
+        assert_eq!(render(true, false), (done, film));
+        let (phase, film) = render(false, true);
+        assert_eq!(phase, Phase::Done(EndReason::Stopped));
+        assert!((1..64).contains(&film.sample_count()));
     }
 }

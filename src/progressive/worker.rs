@@ -67,6 +67,22 @@ impl Worker {
             Ok(command) => self.obey(command),
             Err(TryRecvError::Empty) => self.step(),
         }
+        self.show();
+        true
+    }
+
+    /// Obeys what has been sent, and renders a pass if `renders`, on the caller's thread.
+    pub(super) fn act(&mut self, renders: bool) {
+        while let Ok(command) = self.commands.try_recv() {
+            self.obey(command);
+        }
+        if renders && self.render.as_ref().is_some_and(Render::is_working) {
+            self.step();
+        }
+        self.show();
+    }
+
+    fn show(&mut self) {
         if let Some(render) = &mut self.render {
             let renderer = self.backend.as_ref().map(|(_, renderer)| renderer.as_ref());
             let shown = guarded("the picture", || {
@@ -75,7 +91,6 @@ impl Worker {
             });
             render.complain(shown);
         }
-        true
     }
 
     fn obey(&mut self, command: RenderCommand) {

@@ -18,11 +18,13 @@ pub enum Isa {
     Avx512,
     /// 64-bit Arm: 4 lanes.
     Neon,
+    /// WebAssembly: 4 lanes; multiply and add round separately.
+    Simd128,
 }
 
 impl Isa {
     /// Every level of every processor family.
-    pub const ALL: [Isa; 5] = [Isa::Portable, Isa::Sse42, Isa::Avx2, Isa::Avx512, Isa::Neon];
+    pub const ALL: [Isa; 6] = [Isa::Portable, Isa::Sse42, Isa::Avx2, Isa::Avx512, Isa::Neon, Isa::Simd128];
 
     /// The level's name on the command line.
     pub fn name(self) -> &'static str {
@@ -32,6 +34,7 @@ impl Isa {
             Isa::Avx2 => "avx2",
             Isa::Avx512 => "avx512",
             Isa::Neon => "neon",
+            Isa::Simd128 => "simd128",
         }
     }
 
@@ -47,6 +50,8 @@ impl Isa {
             Isa::Avx512 => Level::new().as_avx512().is_some(),
             #[cfg(target_arch = "aarch64")]
             Isa::Neon => Level::new().as_neon().is_some(),
+            #[cfg(target_arch = "wasm32")]
+            Isa::Simd128 => Level::new().as_wasm_simd128().is_some(),
             _ => false,
         };
         Isa::ALL.into_iter().filter(is_available).collect()
@@ -56,7 +61,7 @@ impl Isa {
     pub fn lane_counts(self) -> &'static [usize] {
         match self {
             Isa::Portable => &[1],
-            Isa::Sse42 | Isa::Neon => &[1, 4, 8],
+            Isa::Sse42 | Isa::Neon | Isa::Simd128 => &[1, 4, 8],
             Isa::Avx2 | Isa::Avx512 => &[1, 4, 8, 16],
         }
     }
@@ -65,7 +70,7 @@ impl Isa {
     pub fn native_lanes(self) -> usize {
         match self {
             Isa::Portable => 1,
-            Isa::Sse42 | Isa::Neon => 4,
+            Isa::Sse42 | Isa::Neon | Isa::Simd128 => 4,
             Isa::Avx2 => 8,
             Isa::Avx512 => 16,
         }

@@ -8,7 +8,7 @@ use super::Isa;
 use super::broadcast::BroadcastScene;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::Lanes16;
-use super::lanes::{Lanes, Lanes4, Lanes8, Reference, Scalar};
+use super::lanes::{Instructions, Lanes, Lanes4, Lanes8, Reference, Scalar};
 use super::path::trace;
 use super::work::{TileStats, Work};
 use crate::kernel::parts;
@@ -30,7 +30,7 @@ const GENERAL: u32 = parts::ALL;
 pub fn offered(isa: Isa, lanes: usize, needed: u32) -> u32 {
     let variants: &[u32] = match (isa, lanes == isa.native_lanes()) {
         _ if lanes == 1 => &[GLASS],
-        (Isa::Sse42, true) => &[GLASS],
+        (Isa::Sse42 | Isa::Simd128, true) => &[GLASS],
         // Which of NEON's counts is faster depends on the processor.
         (Isa::Avx2 | Isa::Avx512, true) | (Isa::Neon, _) => &[OPAQUE, GLASS, FINISHED],
         _ => &[],
@@ -51,15 +51,9 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
             Box::new(|broadcast, work| trace::<_, GENERAL>(Scalar::<false>, broadcast, work))
         }
         #[cfg(target_arch = "x86_64")]
-        (Isa::Sse42, _) => {
-            let simd = level.as_sse4_2()?;
-            match lanes {
-                1 => with_glass(simd, Scalar::<false>, offered),
-                4 => with_glass(simd, Lanes4(simd), offered),
-                8 => compiled::<_, _, GENERAL>(simd, Lanes8(simd)),
-                _ => return None,
-            }
-        }
+        (Isa::Sse42, _) => return unfused(level.as_sse4_2()?, lanes, offered),
+        #[cfg(target_arch = "wasm32")]
+        (Isa::Simd128, _) => return unfused(level.as_wasm_simd128()?, lanes, offered),
         #[cfg(target_arch = "x86_64")]
         (Isa::Avx2, _) | (Isa::Avx512, 1 | 4 | 8) => {
             let simd = level.as_avx2()?;
@@ -90,6 +84,17 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
     })
 }
 
+/// The kernels of a level with registers of four numbers and without fused multiply-add.
+#[cfg(any(target_arch = "x86_64", target_arch = "wasm32"))]
+fn unfused<S: Instructions>(simd: S, lanes: usize, offered: u32) -> Option<Kernel<f32>> {
+    Some(match lanes {
+        1 => with_glass(simd, Scalar::<false>, offered),
+        4 => with_glass(simd, Lanes4(simd), offered),
+        8 => compiled::<_, _, GENERAL>(simd, Lanes8(simd)),
+        _ => return None,
+    })
+}
+
 /// Returns the reference's kernel.
 pub fn reference_kernel() -> Kernel<f64> {
     Box::new(|broadcast, work| trace::<_, GENERAL>(Reference, broadcast, work))
@@ -104,6 +109,7 @@ fn with_glass<S: Simd, L: Lanes<Real = f32>>(simd: S, lanes: L, offered: u32) ->
 }
 
 /// All variants.
+#[cfg(not(target_arch = "wasm32"))]
 fn specialised<S: Simd, L: Lanes<Real = f32>>(simd: S, lanes: L, offered: u32) -> Kernel<f32> {
     match offered {
         OPAQUE => compiled::<_, _, OPAQUE>(simd, lanes),

@@ -9,6 +9,7 @@ use crate::film::{Film, PixelSum};
 use crate::job::render::panic_text;
 use crate::kernel::Real;
 use crate::prepared::PreparedScene;
+use crate::system::threads::Pool;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -99,7 +100,7 @@ impl TracedTile {
 /// Traces passes.
 #[derive(Clone, Copy)]
 pub(super) struct PassTracer<'a> {
-    pub threads: &'a rayon::ThreadPool,
+    pub threads: &'a Pool,
     pub prepared: &'a Prepared,
     /// Tiles left before one in which the tracer panics (fault injection).
     pub tiles_to_panic: Option<&'a AtomicU64>,
@@ -131,7 +132,7 @@ impl PassTracer<'_> {
         let share = traced.len() as f64 / f64::from(tile_count);
         let took: Duration = traced.iter().map(|tile| tile.took).sum();
         let is_whole = !traced.is_empty() && traced.iter().all(TracedTile::is_whole);
-        is_whole.then(|| took.div_f64(share * self.threads.current_num_threads() as f64))
+        is_whole.then(|| took.div_f64(share * self.threads.count() as f64))
     }
 
     fn trace_with<R: Real>(

@@ -58,6 +58,9 @@ fn recorder(isa: Isa) -> Recorder {
     let fused = level.as_avx2();
     #[cfg(target_arch = "aarch64")]
     let fused = level.as_neon();
+    // It has none that is fused, but a type.
+    #[cfg(target_arch = "wasm32")]
+    let fused = level.as_wasm_simd128();
     match fused {
         Some(simd) if isa.is_fused() => Box::new(move |broadcast, pixel, index| {
             simd.vectorize(

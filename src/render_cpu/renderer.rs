@@ -16,6 +16,7 @@ use crate::job::render::{
 };
 use crate::kernel::{Features, Real, parts};
 use crate::prepared::PreparedScene;
+use crate::system::threads::Pool;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -27,7 +28,7 @@ pub struct CpuRenderer {
     /// Whether every job gets the general kernel.
     general: bool,
     low_priority: bool,
-    threads: rayon::ThreadPool,
+    threads: Pool,
     job: Option<RenderJob>,
     pub(super) prepared: Option<Prepared>,
     pub(super) rebuild: Rebuild,
@@ -66,16 +67,15 @@ impl CpuRenderer {
 
     fn with_packets(packets: Option<(Isa, usize)>, options: CpuOptions) -> Result<Self, CpuError> {
         let CpuOptions { threads, low_priority, general, panics_after, .. } = options;
-        let pool = rayon::ThreadPoolBuilder::new()
+        let builder = rayon::ThreadPoolBuilder::new()
             .num_threads(threads.unwrap_or(0))
             .thread_name(|index| format!("trace-{index}"))
             .start_handler(move |_| {
                 if low_priority {
                     give_way();
                 }
-            })
-            .build();
-        let threads = pool.map_err(|error| {
+            });
+        let threads = Pool::start(builder).map_err(|error| {
             let cores = std::thread::available_parallelism().map_or(1, usize::from);
             let threads = threads.filter(|threads| *threads > 0).unwrap_or(cores);
             CpuError::Threads { threads, reason: error.to_string() }
@@ -97,7 +97,7 @@ impl CpuRenderer {
 
 impl Renderer for CpuRenderer {
     fn info(&self) -> BackendInfo {
-        let threads = self.threads.current_num_threads();
+        let threads = self.threads.count();
         match self.packets {
             Some((isa, lanes)) => BackendInfo { name: "cpu", device: isa.to_string(), lanes, threads },
             None => BackendInfo { name: "reference", device: "f64".into(), lanes: 1, threads },
@@ -152,7 +152,7 @@ impl Renderer for CpuRenderer {
     fn estimate_sample_time(&mut self, one_in: usize, cancel: &AtomicBool) -> Option<Duration> {
         let settings = *self.job.as_ref()?.settings();
         let mut film = Film::try_new(settings.width, settings.height, settings.half_count()).ok()?;
-        let side = tile_side(film.width(), film.height(), self.threads.current_num_threads());
+        let side = tile_side(film.width(), film.height(), self.threads.count());
         let count = film.halves().len() as u64;
         let stop = StopRequest::when(cancel);
         let pass =
@@ -173,7 +173,7 @@ impl Renderer for CpuRenderer {
             return Err(FilmError::Overlap { range }.into());
         }
         let start = Instant::now();
-        let side = tile_side(film.width(), film.height(), self.threads.current_num_threads());
+        let side = tile_side(film.width(), film.height(), self.threads.count());
         let stop = StopRequest::when(stop);
         let pass = Pass { side, range: &range, cancel, stop: &stop, purpose: Purpose::Add };
         let tracer = self.pass_tracer().ok_or_else(|| RenderError::Backend {
@@ -255,7 +255,7 @@ impl CpuRenderer {
     /// Begins to build a better hierarchy after long tracing.
     fn begin_better_hierarchy(&mut self, job: &RenderJob, traced: Duration) {
         if let Some(Prepared::Single(broadcast, _)) = &self.prepared {
-            let threads = self.threads.current_num_threads();
+            let threads = self.threads.count();
             self.rebuild.note_pass(traced, threads, &broadcast.prepared, job, self.low_priority);
         }
     }

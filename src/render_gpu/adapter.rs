@@ -148,6 +148,11 @@ pub fn all_adapters(wanted: impl Fn(&AdapterInfo) -> bool) -> Vec<(AdapterInfo, 
 }
 
 fn adapters_of(backends: wgpu::Backends) -> Vec<(AdapterInfo, wgpu::Adapter)> {
+    // Without any, wgpu panics.
+    let backends = backends & wgpu::Instance::enabled_backend_features();
+    if backends.is_empty() {
+        return Vec::new();
+    }
     let found = foreign::logged(|| pollster::block_on(instance(backends).enumerate_adapters(backends)));
     found.into_iter().map(|adapter| (AdapterInfo::of(&adapter), adapter)).collect()
 }

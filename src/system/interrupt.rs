@@ -87,6 +87,12 @@ fn watch(answer: impl Fn(u8) + Send + 'static) -> Result<()> {
     Ok(())
 }
 
+/// Other systems have no signals; they end the program as a whole.
+#[cfg(not(any(unix, windows)))]
+fn watch(_: impl Fn(u8) + Send + 'static) -> Result<()> {
+    Ok(())
+}
+
 /// The signals that the program ignores, as a bit mask with signal 1 lowest. Called before any is handled, it returns
 /// those ignored at the start. Empty where `/proc` does not tell.
 #[cfg(unix)]

@@ -152,7 +152,13 @@ fn of_other_systems() -> Option<u64> {
     Some(system.available_memory()).filter(|bytes| *bytes > 0)
 }
 
-#[cfg(not(any(windows, target_vendor = "apple")))]
+/// A program for browsers has 4 GiB, and keeps what it has once had.
+#[cfg(target_family = "wasm")]
+fn of_other_systems() -> Option<u64> {
+    Some((1 << 32) - 65_536 * core::arch::wasm32::memory_size::<0>() as u64)
+}
+
+#[cfg(not(any(windows, target_vendor = "apple", target_family = "wasm")))]
 fn of_other_systems() -> Option<u64> {
     None
 }

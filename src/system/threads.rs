@@ -1,9 +1,35 @@
 //! Work shared among threads. A system may refuse to start a thread, for example in a full control group or at the
-//! limit on a user's processes; the threads that do start then do all the work.
+//! limit on a user's processes; the threads that do start then do all the work. WebAssembly has none, so there the
+//! caller's does it.
 
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Mutex, PoisonError};
 use std::thread::{self, Builder};
+
+/// Whether the system has threads.
+pub const EXIST: bool = !cfg!(target_family = "wasm");
+
+/// Threads that wait for work, or the caller's.
+pub(crate) struct Pool(Option<ThreadPool>);
+
+impl Pool {
+    pub fn start(builder: ThreadPoolBuilder) -> Result<Pool, ThreadPoolBuildError> {
+        Ok(Pool(EXIST.then(|| builder.build()).transpose()?))
+    }
+
+    pub fn count(&self) -> usize {
+        self.0.as_ref().map_or(1, ThreadPool::current_num_threads)
+    }
+
+    /// Runs `work`, whose parallel iterators use these threads.
+    pub fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        match &self.0 {
+            Some(threads) => threads.install(work),
+            None => work(),
+        }
+    }
+}
 
 /// Applies `work` to each item, on as many threads as the system starts, the caller's included. Returns the results in
 /// the order of the items. A panic is an error of its item alone.

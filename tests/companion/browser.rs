@@ -5,13 +5,20 @@ use serde_json::{Value, json};
 use std::path::Path;
 use std::process::Command;
 
+/// What is in the way of using the page, if something is.
+pub fn obstacle() -> Option<String> {
+    let lacks = |program: &str| Command::new(program).arg("--version").output().is_err();
+    let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/web/node_modules/playwright-core");
+    let is_lacking = lacks("node") || lacks("chromium") || !package.exists();
+    let reason = "the page was not used: install node and chromium, and run npm ci --prefix tests/web";
+    is_lacking.then(|| reason.to_owned())
+}
+
 #[test]
 fn a_reader_can_use_the_page() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
-    let lacks = |program: &str| Command::new(program).arg("--version").output().is_err();
-    if lacks("node") || lacks("chromium") || !folder.join("web/node_modules/playwright-core").exists() {
-        let reason = "the page was not used: install node and chromium, and run npm ci --prefix tests/web";
-        return gpu_common::skip("BROWSER", reason);
+    if let Some(reason) = obstacle() {
+        return gpu_common::skip("BROWSER", &reason);
     }
     let page = PAGE.path().join("out/index.html");
     let output = Command::new("node").arg(folder.join("companion/browser.mjs")).arg(page).output().unwrap();

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod browser;
+mod check;
 mod faults;
 #[path = "../gpu_common/mod.rs"]
 mod gpu_common;

@@ -119,10 +119,7 @@ impl<'a> At<'a> {
 
 impl Read for At<'_> {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        #[cfg(unix)]
-        let count = std::os::unix::fs::FileExt::read_at(self.file, bytes, self.place)?;
-        #[cfg(windows)]
-        let count = std::os::windows::fs::FileExt::seek_read(self.file, bytes, self.place)?;
+        let count = files::read_at(self.file, bytes, self.place)?;
         self.place += count as u64;
         Ok(count)
     }

@@ -2,8 +2,7 @@
 
 use crate::film::{Description, Film, checkpoint, key};
 use crate::job::recipe::plain_name;
-use crate::system::files::{ShownPath, home_directory, state_directory, sync_directory};
-use std::env;
+use crate::system::files::{ShownPath, home_directory, state_directory, sync_directory, temporary_directory};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -24,7 +23,7 @@ pub fn rescue(
     let state = state_directory();
     // If this fails, writing the file will report it.
     let _ = state.as_ref().map(std::fs::create_dir_all);
-    let others = [Some(env::temp_dir()), state, home_directory()];
+    let others = [Some(temporary_directory()), state, home_directory()];
     let places: Vec<PathBuf> = first.iter().cloned().chain(others.into_iter().flatten()).collect();
     keep_in(&places, name, film, description)
 }

@@ -48,7 +48,7 @@ const FILES: &[(&str, &str)] = embedded![
     "docs/companion/diagrams/": "basis.svg" "cosine.svg" "error.svg" "floats.svg" "fuzz.svg" "hero.svg" "hierarchy.svg"
         "lanes.svg" "lens.svg" "life-cycle.svg" "mappings.svg" "path.svg" "pipeline.svg" "points.svg" "rows.svg" "select.svg"
         "shell.svg" "sides.svg" "snell.svg" "sphere.svg" "subtract.svg" "viewport.svg";
-    "assets/companion/": "diagrams.js" "fonts.css" "page.css" "page.js" "theme.js";
+    "assets/companion/": "check.css" "check.js" "diagrams.js" "fonts.css" "page.css" "page.js" "theme.js";
     "assets/web/": "film.js" "live.css" "live.js" "scene.js";
     "examples/": "lanes.rs";
     "reference/": "rt_weekend.c";

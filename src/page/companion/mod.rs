@@ -4,6 +4,7 @@
 mod agreement;
 mod back_matter;
 mod chapter;
+mod check;
 mod directive;
 mod excerpt;
 mod highlight;
@@ -87,6 +88,7 @@ pub fn write(options: &CompanionOptions, interrupt: &Interrupt) -> Result<Outcom
     // Write the page first, so that it can be read while its figures are rendered.
     let build = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_millis();
     let reload = format!("<script>\n{}</script>\n", RELOAD.replace("BUILD", &build.to_string()));
+    check::copy(out).map_err(Failure::Run)?;
     write_text(&index, &(page.html + if options.watch { &reload } else { "" })).map_err(Failure::run)?;
     let mut missing = page.pictures.len();
     for picture in page.pictures.iter().take_while(|_| !interrupt.is_set()) {

@@ -2,6 +2,7 @@
 
 use super::agreement;
 use super::chapter::Chapter;
+use super::check;
 use super::directive;
 use super::library::Fault;
 use super::picture::Picture;
@@ -70,7 +71,7 @@ fn document(site: &Site, content: &Markup, live: &Markup) -> Result<Markup, Faul
                 meta name="description" content=(ABOUT);
                 meta name="color-scheme" content="light dark";
                 link rel="icon" href="data:,";
-                style { (assets(&["companion/fonts.css", "companion/page.css", "web/live.css"])?) }
+                style { (assets(&["companion/fonts.css", "companion/page.css", "web/live.css", "companion/check.css"])?) }
                 // Runs before anything is drawn, so that the page does not flash in the wrong colours.
                 script { (assets(&["companion/theme.js"])?) }
             }
@@ -85,6 +86,8 @@ fn document(site: &Site, content: &Markup, live: &Markup) -> Result<Markup, Faul
                 script type="module" { (assets(&["companion/diagrams.js"])?) }
                 script type="application/json" id="live-data" { (live) }
                 script type="module" { (assets(&["web/scene.js", "web/film.js", "web/live.js"])?) }
+                script type="application/json" id="check-data" { (PreEscaped(check::data())) }
+                script type="module" { (assets(&["companion/check.js"])?) }
             }
         }
     })

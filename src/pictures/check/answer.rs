@@ -7,8 +7,10 @@ use super::{Damage, Finding, Mine};
 use crate::pictures::answer::Verdict;
 use crate::scene::{Scene, Sphere};
 use crate::stages::{Shading, Stage, book_url, heading};
+use serde::Serialize;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum AnswerKind {
     Right,
     /// A mistake that explains all differences.

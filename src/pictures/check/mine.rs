@@ -1,6 +1,7 @@
 //! The reader's picture in 8 bits.
 
 use crate::job::output::{Damage, Incomplete, ReadPicture, Values, decode_picture, displayed, read_picture};
+use crate::system::memory;
 use anyhow::{Result, anyhow, bail, ensure};
 use std::io::Cursor;
 use std::path::Path;
@@ -10,6 +11,9 @@ use std::sync::Arc;
 const SIZE_MIN: [u32; 2] = [16, 9];
 
 const PIXEL_LIMIT: u64 = 4_000_000;
+
+/// Memory that a check takes at most for each pixel; 2,700 were measured.
+const PIXEL_BYTES: u64 = 3000;
 
 /// An 8-bit picture, as the reader's program wrote it.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,6 +111,10 @@ impl Mine {
                 "it has {width} x {height} pixels, more than {PIXEL_LIMIT}; the book's 400 x 225 are enough for a check"
             ));
         }
+        let what = || format!("a check of {width} x {height} pixels");
+        let remedy = "render it at 400 x 225, which is enough for a check";
+        memory::check(what, PIXEL_BYTES * u64::from(width) * u64::from(height), remedy)
+            .map_err(|error| error.to_string())?;
         let byte = |value: u16| {
             let [low, high] = displayed(value, most);
             (128.0 * (low + high)) as u8

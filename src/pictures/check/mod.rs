@@ -25,7 +25,7 @@ pub use watch::{POLL_INTERVAL, Watched};
 
 use super::answer::{Verdict, deliver, lines};
 use crate::cli::terminal::{Display, print_beside};
-use crate::cli::{CheckOptions, ProgressChoice, check_outputs};
+use crate::cli::{CheckOptions, check_outputs};
 use crate::numbers::heat::HeatScale;
 use crate::system::console;
 use crate::system::files::{STANDARD, make_directory, replace_file, write_text};
@@ -68,7 +68,7 @@ pub fn run(options: &CheckOptions) -> Result<ExitCode> {
 
 /// Judges a picture and shows what is being tried.
 fn judged(mine: &Mine, options: &CheckOptions, last: Option<&Finding>) -> Result<Finding> {
-    let mut display = Display::new(ProgressChoice::Auto, 1, "{wide_msg}", "", Duration::ZERO);
+    let mut display = Display::new(options.progress, 1, "{wide_msg}", "", Duration::ZERO);
     let finding = judge_again(mine, options.stage, last, |what| display.update(0, || what));
     display.clear();
     finding
@@ -178,6 +178,7 @@ pub fn text(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> S
 
 /// The report as JSON.
 fn figures(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> serde_json::Value {
+    let answer = finding.answer(mine);
     let mistake = finding.named().zip(finding.mistake.as_ref()).map(|(mistake, found)| {
         json!({
             "id": mistake.id,
@@ -198,8 +199,14 @@ fn figures(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> se
         "rows": mine.rows,
         "stage": finding.stage.id,
         "section": finding.stage.section,
-        "is_right": finding.answer(mine).verdict() == Verdict::Same,
-        "verdict": finding.answer(mine).title,
+        "is_right": answer.verdict() == Verdict::Same,
+        "verdict": answer.title,
+        "kind": answer.kind,
+        "explanation": answer.explanation,
+        "change": answer.remedy,
+        "read": answer.section.map(|section| json!({ "section": section.number, "url": section.url })),
+        "seen": answer.evidence,
+        "places": answer.places,
         "mistake": mistake,
         "damages": mine.damages,
         "files": files.iter().map(|path| path.display().to_string()).collect::<Vec<_>>(),

@@ -58,6 +58,9 @@ pub trait Instructions: Simd {
 #[cfg(target_arch = "aarch64")]
 impl Instructions for fearless_simd::Neon {}
 
+#[cfg(target_arch = "wasm32")]
+impl Instructions for fearless_simd::WasmSimd128 {}
+
 /// Transposes four rows of four numbers.
 #[inline(always)]
 pub(super) fn transpose4<S: Simd>([a, b, c, d]: [f32x4<S>; 4]) -> [f32x4<S>; 4] {

@@ -13,8 +13,9 @@ pub use lock::{FileLock, LockedError, lock_path};
 pub use pages::{GENERATOR, check_page};
 pub use paths::{
     STANDARD, ShownPath, cache_directory, home_directory, identity, make_directory, pictures_directory,
-    state_directory,
+    state_directory, temporary_directory,
 };
+pub(crate) use read::read_at;
 pub use read::{InputError, open, read};
 pub use replace::{WriteError, check_replaceable, check_writable, replace_file, write_text};
 pub use sync::sync_directory;

@@ -103,6 +103,12 @@ pub fn pictures_directory() -> Option<PathBuf> {
     pictures.filter(|pictures| pictures.is_dir())
 }
 
+/// The directory for files that last no longer than the program.
+pub fn temporary_directory() -> PathBuf {
+    // The standard library knows of none there, and panics.
+    if cfg!(target_family = "wasm") { PathBuf::from("/") } else { env::temp_dir() }
+}
+
 pub fn home_directory() -> Option<PathBuf> {
     env::home_dir().filter(|home| home.is_absolute())
 }

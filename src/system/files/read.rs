@@ -83,6 +83,20 @@ fn copy_of(path: &Path) -> io::Result<File> {
     Ok(copy)
 }
 
+/// Reads from a place in a file. Where files have only one position, this moves it.
+pub(crate) fn read_at(file: &File, bytes: &mut [u8], place: u64) -> io::Result<usize> {
+    #[cfg(unix)]
+    return std::os::unix::fs::FileExt::read_at(file, bytes, place);
+    #[cfg(windows)]
+    return std::os::windows::fs::FileExt::seek_read(file, bytes, place);
+    #[cfg(not(any(unix, windows)))]
+    {
+        let mut file = file;
+        file.seek(io::SeekFrom::Start(place))?;
+        file.read(bytes)
+    }
+}
+
 /// Reads a file of at most `limit` bytes. `what` names the expected kind, such as "a scene file".
 ///
 /// # Errors

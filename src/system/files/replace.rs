@@ -16,6 +16,9 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// Pause between attempts.
 const PAUSE: Duration = Duration::from_millis(5);
 
+/// Whether files have permissions. Those in the memory of a page have none, which reads as read-only.
+const HAVE_PERMISSIONS: bool = !cfg!(target_family = "wasm");
+
 /// A failed write. The previous file is unchanged.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot write {}: {reason}; {}", named(path), remedy(path, reason))]
@@ -118,7 +121,7 @@ impl Target {
             Ok(found) if found.is_dir() => return Err(ErrorKind::IsADirectory.into()),
             Ok(found) if !found.is_file() => return Ok(Target::Device { is_pipe: is_pipe(&found) }),
             // A rename would replace a read-only file anyway, but the user marked it to prevent that.
-            Ok(found) if found.permissions().readonly() => {
+            Ok(found) if HAVE_PERMISSIONS && found.permissions().readonly() => {
                 return Err(io::Error::new(ErrorKind::PermissionDenied, "the file is marked read-only"));
             }
             Ok(found) => Some(found.permissions()),
@@ -215,7 +218,7 @@ pub(super) fn is_pipe(_: &Metadata) -> bool {
 
 fn new_file_in(directory: &Path, old: Option<Permissions>) -> io::Result<NamedTempFile> {
     let file = leftovers::create_in(directory)?;
-    if let Some(old) = old {
+    if let Some(old) = old.filter(|_| HAVE_PERMISSIONS) {
         file.as_file().set_permissions(old)?;
     }
     Ok(file)

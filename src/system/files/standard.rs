@@ -1,7 +1,7 @@
 //! Files without a name, for what goes through standard input, standard output and pipes but must be read or written in
 //! any order.
 
-use std::env;
+use super::paths::temporary_directory;
 use std::fs::File;
 use std::io;
 
@@ -14,8 +14,8 @@ pub(super) fn unnamed() -> io::Result<File> {
     if let Ok(file) = rustix::fs::memfd_create("weekender", rustix::fs::MemfdFlags::CLOEXEC) {
         return Ok(file.into());
     }
-    tempfile::tempfile().map_err(|error| {
-        let directory = env::temp_dir();
+    let directory = temporary_directory();
+    tempfile::tempfile_in(&directory).map_err(|error| {
         let text = format!("it needs a temporary file, but {} cannot hold one: {error}", directory.display());
         io::Error::new(error.kind(), text)
     })
