@@ -1,6 +1,6 @@
 //! Instruction set levels and the lane counts that each supports.
 
-#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32"))]
 use fearless_simd::Level;
 use std::fmt;
 

@@ -30,7 +30,10 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("egui_plot", &["app"]),
     ("rfd", &["app"]),
     ("wgpu", &["render_gpu"]),
-    ("rayon", &["denoise", "prepared", "render_cpu", "render_gpu", "backends", "pictures", "measure"]),
+    (
+        "rayon",
+        &["system", "denoise", "prepared", "render_cpu", "render_gpu", "backends", "pictures", "measure"],
+    ),
     ("fearless_simd", &["denoise", "render_cpu"]),
     ("obvhs", &["prepared"]),
     ("libm", &["numbers", "scene"]),

@@ -69,6 +69,8 @@ pub struct Remembered {
     pub recent: Vec<PathBuf>,
     /// The picture of another program that is being checked.
     pub mine: Option<PathBuf>,
+    /// The id of the stage that the user has chosen for it.
+    pub mine_stage: Option<String>,
     /// The ids of the stages whose picture by another program was right.
     pub done: BTreeSet<String>,
     /// The card with the first steps was closed: it does not reopen automatically.
@@ -91,6 +93,7 @@ impl Default for Remembered {
             bookmarks: Vec::new(),
             recent: Vec::new(),
             mine: None,
+            mine_stage: None,
             done: BTreeSet::new(),
             is_greeted: false,
         }

@@ -20,6 +20,7 @@ use eframe::egui::{
     TextureOptions, Ui, Vec2, WidgetInfo, vec2,
 };
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{Builder, sleep};
 
 /// The finding for one state of the file.
@@ -53,6 +54,8 @@ pub struct Check {
     path: Option<PathBuf>,
     /// The stage that the user has chosen for it.
     chosen: Option<&'static Stage>,
+    /// What is being tried.
+    trying: Arc<Mutex<String>>,
     pub shown: Option<Checked>,
     /// Something is to be shown that was not there before.
     has_news: bool,
@@ -74,10 +77,16 @@ impl Check {
     pub fn begin(&mut self, context: &egui::Context, path: &Path, stage: Option<&'static Stage>) {
         self.close();
         let (answer, mut watched) = (self.answers.promise(context), Watched::new(path));
+        self.trying = Arc::new(Mutex::new("reading it".to_owned()));
+        let (trying, window) = (Arc::clone(&self.trying), context.clone());
+        let say = move |what| {
+            *trying.lock().unwrap_or_else(PoisonError::into_inner) = what;
+            window.request_repaint();
+        };
         let watch = move || {
             let outcome = caught(|| {
                 while answer.is_wanted() {
-                    let found = watched.judged(|mine, last| judge_again(mine, stage, last, |_| {}));
+                    let found = watched.judged(|mine, last| judge_again(mine, stage, last, &say));
                     if let Some(found) = found {
                         answer.give(Ok(Checked::of(found)));
                     }
@@ -100,7 +109,8 @@ impl Check {
             && self.path.is_none()
             && let Some(path) = remembered.mine.take().filter(|path| path.exists())
         {
-            self.begin(context, &path, None);
+            let stage = remembered.mine_stage.as_deref().and_then(|id| Stage::find(id).ok());
+            self.begin(context, &path, stage);
             self.has_news = false;
         }
         while let Some(outcome) = self.answers.take() {
@@ -117,6 +127,9 @@ impl Check {
         // A path that is not Unicode could not be stored.
         if remembered.mine != self.path {
             remembered.mine = self.path.clone().filter(|path| path.to_str().is_some());
+        }
+        if remembered.mine_stage.as_deref() != self.chosen.map(|stage| stage.id) {
+            remembered.mine_stage = self.chosen.map(|stage| stage.id.to_owned());
         }
         if std::mem::take(&mut self.has_news) {
             (remembered.has_info, remembered.tab) = (true, Tab::Check);
@@ -158,6 +171,8 @@ impl Check {
             scrolling(ui, |ui| {
                 let what = self.chosen.map_or("every section", |stage| stage.section);
                 hint(ui, &format!("Comparing {name} with {what} and the known mistakes…"));
+                let trying = self.trying.lock().unwrap_or_else(PoisonError::into_inner).clone();
+                hint(ui, &format!("Now: {trying}."));
                 ui.horizontal(|ui| {
                     if ui.button("Stop").clicked() {
                         self.close();

@@ -69,6 +69,7 @@ impl Window {
         }
         if options.mine.is_some() {
             remembered.mine.clone_from(&options.mine);
+            remembered.mine_stage = None;
             (remembered.has_info, remembered.tab) = (true, Tab::Check);
         }
         let goes_on = !options.is_fresh && !options.is_picture_given;
