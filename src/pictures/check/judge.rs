@@ -66,7 +66,7 @@ const CANDIDATES: usize = 4;
 const FOUND: f64 = 0.03;
 
 /// Stages whose difference exceeds the least one by more than this are not judged.
-const NEAR: f64 = 0.01;
+const NEAR: f64 = 0.02;
 
 /// Least difference between a pixel's neighbours at an edge, linear radiance. Noise stays below it.
 const EDGE: f64 = 0.05;
