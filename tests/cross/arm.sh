@@ -18,10 +18,6 @@ export XDG_RUNTIME_DIR=$work
 emulated() {
     qemu-aarch64 -L /usr/aarch64-linux-gnu "$@"
 }
-case_of() { # case_of NAME COMMAND...
-    "${@:2}" > "$work/out" 2>&1 < /dev/null
-    report "$1" $?
-}
 
 [ -z "${UNIT_TESTS:-}" ] || unit_tests emulated "$UNIT_TESTS"
 cd "$work" || exit 1

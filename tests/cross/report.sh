@@ -10,6 +10,10 @@ report() { # report NAME OUTCOME
         tail -n 12 "$work/out" | sed 's/^/         /'
     fi
 }
+case_of() { # case_of NAME COMMAND...
+    "${@:2}" > "$work/out" 2>&1 < /dev/null
+    report "$1" $?
+}
 same_bits() { # same_bits NAME FILM FILM
     "$host" compare "$2" "$3" > "$work/out" 2>&1
     grep -q 'equal to the bit' "$work/out"

@@ -14,10 +14,6 @@ export XDG_RUNTIME_DIR=$work
 web() {
     node "$here/program.mjs" "$script" "$@"
 }
-case_of() { # case_of NAME COMMAND...
-    "${@:2}" > "$work/out" 2>&1 < /dev/null
-    report "$1" $?
-}
 same_text() { # same_text NAME FILE FILE
     diff "$2" "$3" > "$work/out" 2>&1
     report "$1" $?

@@ -28,7 +28,7 @@ const REFINED: usize = 6;
 /// A mistake that leaves more than this share of the squared error is not rendered in full size.
 const HOPELESS: f64 = 0.7;
 
-/// Nor is one that leaves so many times the squared error of the best, and more than [`NEARLY`].
+/// Nor is one that leaves more than this many times the squared error of the best one, and more than [`NEARLY`].
 const FAR: f64 = 10.0;
 
 /// A mistake is offered as a guess if it leaves less than this share of the right picture's squared error.
