@@ -85,7 +85,8 @@ fn difference_is_found_and_marked() {
     let sides = ["--scene", "book", "--sides", "portable,reference"];
     let (code, found, errors) = diff(&[&sides[..], &["--find", "2"]].concat());
     assert_eq!(code, 1, "{errors}");
-    for part in ["▶ ", "≠", "is allowed", "the paths part", "verdict", "cpu portable", "reference, f64"] {
+    for part in ["▶ ", "≠", "is allowed", "the paths diverge", "verdict", "cpu portable", "reference, f64"]
+    {
         assert!(found.contains(part), "{part}: {found}");
     }
     assert!(!found.contains('\x1b'), "no colours in a file");

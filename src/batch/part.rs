@@ -56,7 +56,7 @@ fn render_samples(plan: &Plan, index: usize, options: PartOptions) -> Result<Exi
     let files = Files::lock(&batch)?;
     match find(&path, plan, part)? {
         Some(found) if part.missing(found.film.samples()) == 0 => {
-            let text = format!("part {index} is whole: samples {start}..{end} in {}\n", path.shown());
+            let text = format!("part {index} is complete: samples {start}..{end} in {}\n", path.shown());
             print_beside(batch.json.as_deref(), &text).map_err(Failure::Run)?;
             let figures = summary_of_whole(&batch, &found).json();
             write_figures(&figures, batch.json.as_deref()).map_err(Failure::Run)?;

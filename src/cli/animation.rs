@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// Options of `--batch --frames`.
 #[derive(Debug)]
 pub struct FramesOptions {
-    /// The scene and its settings. The camera is not that of a frame.
+    /// The scene and its settings. Each frame replaces its camera.
     pub recipe: Recipe,
     /// The validated job of the recipe.
     pub job: RenderJob,
@@ -53,7 +53,7 @@ pub(super) fn frames(flags: RenderFlags) -> Result<FramesOptions> {
         (Some(frames), _) => frames,
         (None, Some(Turn::FramesPerTurn(count))) => 0..count,
         (None, _) => {
-            bail!("--turntable in degrees needs --frames: it has no whole number of frames a turn; give A..B")
+            bail!("--turntable in degrees needs --frames A..B: a turn may not be a whole number of frames")
         }
     };
     for frame in frames.clone() {
@@ -82,7 +82,7 @@ pub(super) fn frames(flags: RenderFlags) -> Result<FramesOptions> {
     })
 }
 
-/// The files of the frames: `frame-0000.png` and so on in a directory, or those of a pattern.
+/// The files of the frames: `frame-0000.png` and so on in a directory, or named after a pattern.
 fn names(out: &Path) -> Result<FrameNames> {
     let is_pattern = out.file_name().is_some_and(|name| name.to_string_lossy().contains('#'));
     let is_directory = out.is_dir() || (out.extension().is_none() && !is_pattern);
@@ -91,7 +91,7 @@ fn names(out: &Path) -> Result<FrameNames> {
     FrameNames::of_pattern(&pattern).filter(|_| is_png).with_context(|| {
         format!(
             "--out is {}, but an animation is a directory of PNG files, or a pattern with a single row of # such as \
-             turn-####.png; other programs, such as ffmpeg, make a film of them",
+             turn-####.png; other programs, such as ffmpeg, turn them into a video",
             out.shown()
         )
     })

@@ -35,16 +35,16 @@ struct BackendFlags {
     /// CPU threads, 1 to 1024 [default: one per core]
     #[arg(long, value_name = "COUNT", value_parser = whole::<usize>(1..=1024))]
     threads: Option<usize>,
-    /// Lose the GPU after this many dispatches, to see that the CPU continues (fault injection)
+    /// Lose the GPU after this many dispatches, so that the CPU takes over (fault injection)
     #[arg(long, value_name = "DISPATCHES", group = "fault")]
     simulate_device_lost: Option<u64>,
     /// Make an invalid call after this many dispatches (fault injection)
     #[arg(long, value_name = "DISPATCHES", hide = true, group = "fault")]
     simulate_invalid_call: Option<u64>,
-    /// Let the GPU not answer for 10 s after this many dispatches (fault injection)
+    /// Make the GPU unresponsive for 10 s after this many dispatches (fault injection)
     #[arg(long, value_name = "DISPATCHES", hide = true, group = "fault")]
     simulate_hang: Option<u64>,
-    /// Let the CPU's tracer panic after this many tiles (fault injection)
+    /// Make the CPU tracer panic after this many tiles (fault injection)
     #[arg(long, value_name = "TILES", hide = true)]
     simulate_panic: Option<u64>,
 }
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn a_device_gets_the_options_that_are_its_own() {
+    fn each_device_gets_only_its_own_options() {
         let cpu = CpuOptions { threads: Some(3), ..CpuOptions::default() };
         let gpu = || GpuOptions::of_adapter(Some("some"));
         for (flags, expected) in [
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn other_devices_flags_are_refused() {
+    fn flags_of_other_devices_are_refused() {
         for (flags, parts) in [
             ("--device cpu --adapter some", ["--adapter", "the GPU"]),
             ("--device reference --adapter some", ["--adapter", "the GPU"]),

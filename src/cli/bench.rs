@@ -31,16 +31,16 @@ pub struct BenchOptions {
     /// Source of random numbers [default: sobol, or the scene's]
     #[arg(long, value_enum)]
     sampler: Option<SamplerKind>,
-    /// Instruction levels, separated by commas; auto: the best of this processor, all: all that it has
+    /// Instruction levels, separated by commas; auto: the best that this processor supports; all: every one it supports
     #[arg(long, value_name = "LEVEL,...", value_parser = parse_levels, default_value = "auto")]
     isa: Auto<Vec<Isa>>,
-    /// Threads of the rows with several threads, 1 to 1024 [default: one per core]
+    /// Number of threads in the multi-threaded rows, 1 to 1024 [default: one per core]
     #[arg(long, value_name = "COUNT", value_parser = whole::<usize>(1..=1024))]
     threads: Option<usize>,
     /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter
     #[arg(long, value_name = "SUBSTRING")]
     pub adapter: Option<String>,
-    /// Runs of each row, after a warm-up that does not count, 1 to 1000; with --quick, 3 by default
+    /// Runs of each row, after an untimed warm-up, 1 to 1000; with --quick, 3 by default
     #[arg(long, value_name = "COUNT", value_parser = whole::<usize>(1..=1000), default_value = "5",
           default_value_if("quick", "true", "3"))]
     pub runs: usize,
@@ -71,7 +71,7 @@ pub struct BenchScene {
 /// Scenes measured by default.
 const DEFAULT_SCENES: [&str; 2] = ["three-spheres", "book"];
 
-/// Most paths of a run by default.
+/// Default maximum of paths per run.
 const PATH_LIMIT: u64 = 75_000_000;
 const QUICK_PATH_LIMIT: u64 = 3_000_000;
 

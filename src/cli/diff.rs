@@ -27,7 +27,7 @@ pub struct DiffOptions {
     /// The two backends to compare: cpu, portable (multiply and add rounded separately), reference (f64) or gpu
     #[arg(long, value_name = "A,B", value_delimiter = ',', default_value = "cpu,gpu")]
     sides: Vec<String>,
-    /// Largest relative difference that does not count
+    /// Largest relative difference that is ignored
     #[arg(long, value_name = "SHARE", value_parser = number(0.0..=1.0, "from 0 to 1, such as 1e-4"),
           default_value = "1e-4")]
     pub tolerance: f64,
@@ -86,8 +86,7 @@ impl DiffOptions {
 
     /// The two backends.
     ///
-    /// # Errors
-    /// If there are no two of these names.
+    /// # Errors Unless two known names are given.
     pub fn sides(&self) -> Result<[BackendChoice; 2]> {
         ensure!(
             self.adapter.is_none() || self.sides.iter().any(|name| name == "gpu"),

@@ -18,7 +18,7 @@ pub struct MergeOptions {
     /// Where the result is written: .exr for the film, .png or .ppm for the picture; may be repeated
     #[arg(long, value_name = "FILE", required_unless_present = "check")]
     pub out: Vec<PathBuf>,
-    /// Write nothing; read everything, list what a plan lacks and what is damaged or foreign, and print the commands for
+    /// Write nothing; read everything, list what is missing, damaged or foreign, and print the commands that render
     /// what is missing
     #[arg(long, conflicts_with = "out")]
     pub check: bool,
@@ -79,20 +79,20 @@ pub struct CompanionOptions {
 /// Options of `weekender check`.
 #[derive(Clone, Debug, Args)]
 pub struct CheckOptions {
-    /// The pictures that your own program has written: PPM (P3 or P6) or PNG, of any shape, from 16 x 9 to 4 million
-    /// pixels; for several, one line each
+    /// The pictures that your own program wrote: PPM (P3 or P6) or PNG, of any shape, from 16 x 9 to 4 million pixels;
+    /// for several, one line each
     #[arg(required = true, num_args = 1.., value_name = "PICTURE")]
     pub pictures: Vec<PathBuf>,
     /// The stage of the book that they show [default: the one that each looks like]
     #[arg(long, value_name = "ID", value_parser = Stage::find)]
     pub stage: Option<&'static Stage>,
-    /// Check again after each change, also while the picture is being written, until Ctrl-C
+    /// Check again after each change, even while the picture is being written, until Ctrl-C
     #[arg(long, conflicts_with = "out")]
     pub watch: bool,
     /// Write mine.png, ours.png and difference.png of a single picture to this directory
     #[arg(long, value_name = "DIRECTORY")]
     pub out: Option<PathBuf>,
-    /// Write the finding as JSON, with --watch or several pictures one line each; - for standard output
+    /// Write the finding as JSON; with --watch or several pictures, one line each; - for standard output
     #[arg(long, value_name = "FILE|-")]
     pub json: Option<PathBuf>,
     /// Show on standard error what is being tried; auto: if it is a terminal
@@ -147,8 +147,8 @@ pub struct StressOptions {
     /// Run only cases whose id contains this, such as copies or moved/1e5
     #[arg(long, value_name = "TEXT", default_value = "", hide_default_value = true)]
     pub filter: String,
-    /// Instruction levels, separated by commas; auto: the best that fuses multiply and add and the best that does not,
-    /// all: all that this processor has
+    /// Instruction levels, separated by commas; auto: the best with and the best without fused multiply-add; all: every
+    /// one that this processor supports
     #[arg(long, value_name = "LEVEL,...", value_parser = parse_levels, default_value = "auto")]
     isa: Auto<Vec<Isa>>,
     /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter [default: the

@@ -73,18 +73,18 @@ struct Raw {
 pub enum Command {
     /// Measure the speed of this machine, compared with a plain C program: tables and JSON
     ///
-    /// Rows take turns, after a warm-up that does not count. Medians are shown with minimum and maximum. Reading,
-    /// preparing and writing are not timed. The C program is compiled with the compiler that CC names, or with cc.
+    /// Rows take turns, after an untimed warm-up. Medians are shown with minimum and maximum. Reading, preparing and
+    /// writing are not timed. The C program is compiled with the compiler that CC names, or with cc.
     Bench(Box<BenchOptions>),
-    /// Divide the samples of a picture into parts that many machines render, and make the commands for them
+    /// Divide the samples of a picture into parts for many machines, and make the commands that render them
     ///
     /// Writes plan.json and the scene into the directory --out. A part's command can be repeated at any time: it continues
-    /// from the part's last checkpoint, and ends at once if the part is whole.
+    /// from the part's last checkpoint, and ends at once if the part is complete.
     Plan(Box<PlanOptions>),
     /// Render a part of a plan, or continue it
     ///
-    /// The part's film is its own checkpoint. The exit code is 0 if the part is whole, 143 after SIGTERM (the checkpoint is
-    /// written; run it again), 130 after Ctrl-C and 2 if the part cannot be rendered.
+    /// The part's film is its own checkpoint. The exit code is 0 if the part is complete, 143 after SIGTERM (the
+    /// checkpoint is written; run it again), 130 after Ctrl-C and 2 if the part cannot be rendered.
     RenderPart(Box<PartOptions>),
     /// Merge films of the same picture that hold different samples, or the parts of a plan
     ///
@@ -93,7 +93,7 @@ pub enum Command {
     Merge(Box<MergeOptions>),
     /// Show the metadata of a film, picture, scene file or plan
     Info(InfoOptions),
-    /// Show a path as two backends trace it, side by side, and where the paths part
+    /// Show a path as two backends trace it, side by side, and where the two diverge
     ///
     /// The exit code is 0 if the two agree, 1 if they differ and 2 if they could not be compared.
     Diff(Box<DiffOptions>),
@@ -109,7 +109,7 @@ pub enum Command {
     /// fuses multiply and add, by one that does not, in f64, and by the GPU if available. The exit code is 0 if all
     /// are right, 1 if one is wrong and 2 if nothing could be run.
     Stress(Box<StressOptions>),
-    /// Write the companion: a web page that goes through the book in pictures, in code and live
+    /// Write the companion: a web page that follows the book in pictures, in code and live
     ///
     /// The page is index.html in the directory --out, with its figures beside it. It needs no server and no network.
     /// Only figures that changed are rendered again.
@@ -118,7 +118,7 @@ pub enum Command {
     ///
     /// Only pictures that are missing, damaged or changed are rendered. After Ctrl-C, the same command continues.
     Gallery(Box<GalleryOptions>),
-    /// Find the mistake in a picture that your own program has rendered
+    /// Find the mistake in a picture that your own program rendered
     ///
     /// Finds the stage of the book that the picture shows, and the mistake with what to change. The exit code is 0 if all
     /// pictures are right, 1 if there is a mistake, and otherwise 2 if one could not be checked.
@@ -166,7 +166,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
     Ok(Request::Command(command))
 }
 
-/// The arguments as clap reads them. A file in the place of a command, as file managers give it, is opened in the window.
+/// The arguments as clap reads them. A file in place of a command, as file managers pass it, opens in the window.
 fn matches(arguments: impl IntoIterator<Item = OsString>) -> Result<ArgMatches, clap::Error> {
     let mut arguments: Vec<OsString> = arguments.into_iter().collect();
     let error = match command().try_get_matches_from(&arguments) {
@@ -201,7 +201,7 @@ fn is_given(matches: &ArgMatches, flag: &str) -> bool {
     matches.value_source(flag) == Some(ValueSource::CommandLine)
 }
 
-/// Arguments for those of `flags` that are given.
+/// The arguments that repeat those of `flags` that were given.
 fn words(matches: &ArgMatches, flags: &[&str]) -> Vec<String> {
     let value = |flag: &str| matches.get_raw(flag).into_iter().flatten().next();
     let given = flags.iter().filter(|flag| is_given(matches, flag));

@@ -17,7 +17,7 @@ pub fn check_paths<'a>(
     for path in outputs {
         ensure!(
             identity(path).is_none_or(|file| seen.insert(file)),
-            "{} would replace an input or another output of this command; give each file a name of its own",
+            "{} would replace an input or another output of this command; give each file its own name",
             path.shown()
         );
     }

@@ -13,7 +13,7 @@ use clap::{Args, ValueHint};
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// The variables in which schedulers give a task its number.
+/// Environment variables in which schedulers pass the number of a task.
 const PART_VARIABLES: [&str; 2] = ["SLURM_ARRAY_TASK_ID", "JOB_COMPLETION_INDEX"];
 
 /// Options of `weekender plan`.
@@ -53,7 +53,7 @@ impl PlanOptions {
     pub fn divided(&self) -> Result<(Recipe, RenderJob, Manifest)> {
         ensure!(
             self.out.to_str().is_some_and(|name| !name.chars().any(char::is_control)),
-            "--out is {}, which cannot stand in a command: its name must be UTF-8 without control characters",
+            "--out is {}, which cannot be part of a command: its name must be UTF-8 without control characters",
             self.out.shown()
         );
         let (ChosenRecipe { mut recipe, stage }, job) = sources::picture(&self.picture, &self.samples, None)?;
@@ -107,8 +107,8 @@ impl PartOptions {
         }
         let found = PART_VARIABLES.into_iter().find_map(|name| Some((name, std::env::var(name).ok()?)));
         let (name, value) = found.context(
-            "render-part needs --part NUMBER: neither SLURM_ARRAY_TASK_ID nor JOB_COMPLETION_INDEX says which part this \
-             task is to render",
+            "render-part needs --part NUMBER: neither SLURM_ARRAY_TASK_ID nor JOB_COMPLETION_INDEX says which part to \
+             render",
         )?;
         value.parse().with_context(|| {
             format!("{name} is {value:?}, but must be the number of a part; set it, or give --part NUMBER")

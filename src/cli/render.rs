@@ -36,7 +36,7 @@ pub(super) struct RenderFlags {
     /// Open this film, picture or scene file in the window; FILE without a flag does the same. A picture of another program is checked
     #[arg(long, value_name = "FILE", conflicts_with_all = ["batch", "list", "scene", "stage", "resume", "AnimationFlags"])]
     pub open: Option<PathBuf>,
-    /// Open the window with its usual first picture instead of what was shown last
+    /// Open the window with its default picture instead of the last one shown
     #[arg(long, conflicts_with = "batch")]
     pub fresh: bool,
     /// Autosave interval of the window, 0.1s to 30d of tracing
@@ -83,8 +83,8 @@ pub(super) struct AnimationFlags {
     /// file [default with --turntable: one turn]
     #[arg(long, value_name = "A..B", value_parser = range(FRAME_LIMIT, "0..120"), group = "moving")]
     pub frames: Option<Range<u32>>,
-    /// Let the camera circle around --look-at about --vup: the frames of a turn, or the degrees between two frames, such
-    /// as 1.5deg or -3deg [without a value: 120 frames]
+    /// Move the camera around --look-at, about --vup: the number of frames per turn, or the degrees per frame, such as
+    /// 1.5deg or -3deg [without a value: 120 frames]
     #[arg(long, value_name = "FRAMES|DEGREES", value_parser = parse_turn, num_args = 0..=1,
           require_equals = true, default_missing_value = "120", group = "moving")]
     pub turntable: Option<Turn>,
@@ -103,11 +103,11 @@ pub(super) struct FileFlags {
     /// directory or a pattern such as turn-####.png [default: SCENE.png]
     #[arg(long, value_name = "FILE", requires = "batch")]
     pub out: Option<PathBuf>,
-    /// The format of --out if its name does not tell it
+    /// The format of --out, if its extension does not tell
     #[arg(long, value_enum, requires = "out", conflicts_with = "AnimationFlags")]
     format: Option<OutputFormat>,
-    /// Write the denoised picture, with an estimate of its error; the film of a .exr gets it as a layer and stays as it
-    /// is; --noise-target is then for the denoised picture
+    /// Write the denoised picture, with an estimate of its error; an .exr keeps its film and gains the denoised picture
+    /// as a layer; --noise-target then applies to the denoised picture
     #[arg(long, requires = "batch", conflicts_with = "AnimationFlags")]
     denoise: bool,
     /// Keep the film so that it can be resumed or merged; it is written regularly and at the end, even after Ctrl-C. An
@@ -144,7 +144,7 @@ pub struct WindowOptions {
     pub stage: Option<&'static Stage>,
     /// The scene file that it comes from.
     pub file: Option<PathBuf>,
-    /// Whether a flag gave the picture its size.
+    /// Whether a flag set the size of the picture.
     pub is_size_given: bool,
     /// Whether flags chose or changed the picture.
     pub is_picture_given: bool,
@@ -159,7 +159,7 @@ pub struct WindowOptions {
     pub mine: Option<PathBuf>,
     /// Whether the picture was read from a film or another picture.
     pub is_saved: bool,
-    /// Whether to open the usual first picture instead of the last one.
+    /// Whether to open the default picture instead of the last one.
     pub is_fresh: bool,
     /// Tracing time between autosaves.
     pub autosave_every: Duration,
@@ -233,7 +233,7 @@ pub(super) fn request(mut flags: RenderFlags, matches: &ArgMatches) -> Result<Re
     }
 }
 
-/// Whether a file is a scene rather than a picture, which only its name tells.
+/// Whether a file is a scene rather than a picture, judged by its name.
 fn is_scene_file(path: &Path) -> bool {
     path == Path::new(STANDARD) || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"))
 }

@@ -40,7 +40,7 @@ pub struct ReportOptions {
     /// Pictures per curve, which differ only in their random numbers, 1 to 1000
     #[arg(long, value_name = "COUNT", value_parser = whole::<u32>(1..=1000), default_value = "8")]
     pub seeds: u32,
-    /// Seconds of tracing for all pictures of a curve; each picture ends with the last doubling that fits
+    /// Seconds of tracing for all pictures of a curve; each picture doubles its samples as long as they fit
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, default_value = "12")]
     pub time_limit: f64,
     /// Maximum samples per pixel, 2 to 4294967296

@@ -107,7 +107,7 @@ pub(super) struct SampleFlags {
     /// Samples per pixel, 1 to 4294967296 [default: the scene's; unlimited with --time-limit or --noise-target]
     #[arg(long, value_name = "COUNT", value_parser = whole::<u64>(1..=SAMPLE_LIMIT))]
     pub samples: Option<u64>,
-    /// Only samples A to B - 1, for `weekender merge` or to add them to a picture that has the others
+    /// Only samples A to B - 1, for `weekender merge` or to complete a picture that has the others
     #[arg(long, value_name = "A..B", value_parser = range(SAMPLE_LIMIT, "0..64"),
           conflicts_with = "samples")]
     pub sample_range: Option<Range<u64>>,

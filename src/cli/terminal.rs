@@ -26,7 +26,7 @@ pub fn print_beside(json: Option<&Path>, text: &str) -> Result<()> {
     print(text)
 }
 
-/// Figures with what all JSON of this program begins with.
+/// Figures, after the header that all JSON of this program has.
 #[derive(Serialize)]
 struct Envelope<'a, T> {
     /// Incremented when a key is removed or changes meaning.
@@ -64,7 +64,7 @@ pub enum Display {
     Lines {
         /// When the next line may be printed.
         next: Instant,
-        /// Least time between two lines.
+        /// Minimum time between two lines.
         interval: Duration,
     },
     /// Nothing.

@@ -192,7 +192,8 @@ pub(super) fn parse_turn(text: &str) -> Result<Turn, String> {
         || text.parse().ok().filter(|frames| (2..=FRAME_LIMIT).contains(frames)).map(Turn::FramesPerTurn);
     frames().or_else(degrees).ok_or_else(|| {
         format!(
-            "must be 2 to {FRAME_LIMIT} frames a turn, such as {FRAMES_PER_TURN}, or up to 180 degrees a frame, such as 3deg or -3deg"
+            "must be 2 to {FRAME_LIMIT} frames per turn, such as {FRAMES_PER_TURN}, or up to 180 degrees per frame, \
+             such as 3deg or -3deg"
         )
     })
 }

@@ -75,7 +75,7 @@ fn part_continues_from_its_checkpoint_unless_whole() {
 
     let modified = || std::fs::metadata(&path).unwrap().modified().unwrap();
     let before = modified();
-    assert!(render_part(at, "p", 1).contains("part 1 is whole: samples 32..64 in"));
+    assert!(render_part(at, "p", 1).contains("part 1 is complete: samples 32..64 in"));
     // A scheduler that repeats a command reads the same JSON again.
     let again = json(at, &part);
     assert_eq!((&again["added_samples_per_pixel"], &again["samples_per_pixel"]), (&0.into(), &32.into()));

@@ -48,7 +48,7 @@ fn make_and_parallel_render_and_merge() {
         // Only what was lost is rendered again.
         fs::remove_file(part_path(at, "a b", 1)).unwrap();
         let again = shell(at, start);
-        assert!(tool != "make" || again.matches("is whole: samples").count() == 2, "{again}");
+        assert!(tool != "make" || again.matches("is complete: samples").count() == 2, "{again}");
     }
 }
 

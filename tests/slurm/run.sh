@@ -164,7 +164,7 @@ submitted
 wait_for 60 "all has ended" has_ended "$array,$merge_job"
 [ "$(field "$merge_job" ExitCode)" = 0:0 ] || fail "the merge is not complete"
 for part in {0..7}; do
-    [ "$(grep -c 'is whole: samples' "plan/part-$part.log")" -ge 1 ] || fail "part $part was rendered again"
+    [ "$(grep -c 'is complete: samples' "plan/part-$part.log")" -ge 1 ] || fail "part $part was rendered again"
 done
 said "sh plan/submit.sh once more: every task finds its part whole, and the merge ends with 0"
 

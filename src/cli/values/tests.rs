@@ -49,7 +49,7 @@ fn turns_are_frames_or_degrees() {
 }
 
 #[test]
-fn nonsense_is_refused_with_what_is_allowed() {
+fn refusals_name_what_is_allowed() {
     for text in ["", "800", "800x", "0x450", "800x16385", "99999999999x1", "-8x4"] {
         assert!(parse_size(text).unwrap_err().contains("16384"), "{text}");
     }

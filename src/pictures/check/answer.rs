@@ -25,7 +25,7 @@ pub enum AnswerKind {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     pub kind: AnswerKind,
-    /// The mistake, or what the check came to. Neither this nor the other texts end with a full stop.
+    /// The mistake, or the outcome of the check. Neither this nor the other texts end with a full stop.
     pub title: String,
     /// One sentence.
     pub explanation: String,
@@ -35,7 +35,7 @@ pub struct Answer {
     pub section: Option<Section>,
     /// The stage that the picture shows.
     pub stage: Option<&'static Stage>,
-    /// Figures and observations, one a line.
+    /// Figures and observations, one per line.
     pub evidence: Vec<String>,
     /// Column and row of a few places where it differs from ours by more than noise, the worst first.
     pub places: Vec<[u32; 2]>,
@@ -105,7 +105,7 @@ impl Finding {
             section: None,
             stage: Some(self.stage),
             evidence: self.evidence(mine),
-            // If most of it differs, no place tells more than another.
+            // If most of it differs, no place is more telling than another.
             places: match self.right.differing {
                 share if share > 0.0 && share < 0.5 => apart(&self.right.places),
                 _ => Vec::new(),
@@ -115,8 +115,8 @@ impl Finding {
         if self.ignored.is_some() {
             answer.title = "It is right, as far as it can be checked".to_owned();
             answer.explanation =
-                "What does not depend on where the small spheres are differs from ours by noise only; \
-                                  glass, fuzz and the lens hardly show there"
+                "The part that does not depend on the placement of the small spheres differs from ours by noise only; \
+                 glass, fuzz and the lens hardly show there"
                     .to_owned();
         }
         if let Some(mistake) = self.named().filter(|_| self.is_other_right()) {
@@ -132,7 +132,7 @@ impl Finding {
                 [other, ..] => {
                     answer.kind = AnswerKind::LikelyMistake;
                     answer.title = format!("{}, or {}", answer.title, other.title);
-                    "Each of them gives this picture".to_owned()
+                    "Each of them produces this picture".to_owned()
                 }
             };
             answer.remedy = Some(capitalised(mistake.remedy));
@@ -143,7 +143,7 @@ impl Finding {
             answer.kind = AnswerKind::LikelyMistake;
             answer.title = format!("A guess: {}", mistake.title);
             answer.explanation =
-                "It comes nearest of the known mistakes, but does not explain everything".to_owned();
+                "It is the closest of the known mistakes, but does not explain everything".to_owned();
             answer.remedy = Some(capitalised(mistake.remedy));
             answer.section = Section::find(mistake.section);
         } else if !self.is_sure {
@@ -168,18 +168,18 @@ impl Finding {
         answer.kind = AnswerKind::CannotCheck;
         let (title, remedy) = match self.grain.and_then(|grain| grain.altered) {
             Some(altered) => (
-                format!("This is not the file that a ray tracer writes: {altered}"),
+                format!("This file did not come straight from a ray tracer: {altered}"),
                 "Check the PPM or PNG that your program writes: JPEG, palettes, scaling and filters change it",
             ),
             None => (
                 "It is too noisy to judge".to_owned(),
-                "Render it with at least 10 samples per pixel; 100 show small faults, too",
+                "Render it with at least 10 samples per pixel; with 100, even small faults show",
             ),
         };
         (answer.title, answer.remedy) = (title, Some(remedy.to_owned()));
         let likely = format!("It looks like section {}", self.stage.section);
         answer.explanation = match self.named() {
-            _ if self.right.misfit < NEARLY_RIGHT => format!("{likely}, and no fault can be seen"),
+            _ if self.right.misfit < NEARLY_RIGHT => format!("{likely}, and no fault shows"),
             Some(mistake) => format!("{likely}, perhaps with this mistake: {}", mistake.title),
             None => format!("{likely}, but with differences that cannot be told from noise"),
         };
@@ -233,7 +233,7 @@ impl Finding {
         if let Some(grain) =
             self.grain.filter(|grain| grain.altered.is_none() && (1.0..5000.0).contains(&grain.samples))
         {
-            evidence.push(format!("Its noise is that of about {:.0} samples per pixel", grain.samples));
+            evidence.push(format!("Its noise matches about {:.0} samples per pixel", grain.samples));
         }
         let is_gradient = self.stage.setup.rules.shading == Shading::ImageGradient;
         if self.is_right() && mine.width == mine.height && !is_gradient {
@@ -261,7 +261,7 @@ fn apart(places: &[[u32; 2]]) -> Vec<[u32; 2]> {
     chosen
 }
 
-/// What can be measured of a picture that no mistake explains: brightness, where it differs, and shifts.
+/// Measurements of a picture that no mistake explains: brightness, where it differs, and shifts.
 fn measured(right: &Compared, mine: &Mine) -> Vec<String> {
     let seen = Seen::of(mine, &right.hypothesis.written, |_, _| 0.0);
     let mut measured = Vec::new();
@@ -291,7 +291,7 @@ fn measured(right: &Compared, mine: &Mine) -> Vec<String> {
     if let Some(([dx, dy], least)) = errors.into_iter().min_by(|(_, a), (_, b)| a.total_cmp(b))
         && least < 0.7 * here
     {
-        measured.push(format!("it fits better if it is moved by {} pixels to the left and {} up", dx, dy));
+        measured.push(format!("it fits better if moved by {} pixels to the left and {} up", dx, dy));
     }
     let tracer = Tracer::new(&right.hypothesis.recipe, Steps::OF_THE_BOOK, 1);
     let spheres = tracer.spheres();

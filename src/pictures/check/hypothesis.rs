@@ -61,7 +61,7 @@ impl Mistake {
     }
 }
 
-/// A picture the reader's may be: how its linear values are made, and how they become bytes.
+/// A candidate for the reader's picture: how its linear values are made, and how they become bytes.
 #[derive(Clone, Debug)]
 pub struct Hypothesis {
     /// The mistake; `None` for the right picture.
@@ -69,21 +69,21 @@ pub struct Hypothesis {
     /// An extra remark for the reader.
     pub note: Option<String>,
     pub recipe: Recipe,
-    /// The steps of the plain tracer; without, the program's own tracer renders the recipe.
+    /// The steps of the plain tracer; if `None`, the program's own tracer renders the recipe.
     pub steps: Option<Steps>,
-    /// A number of the mistake that only the reader's picture tells.
+    /// A parameter of the mistake, fitted to the reader's picture.
     pub fit: Option<Fit>,
     /// Whether only pixels at edges show it.
     pub is_fine: bool,
     pub written: Written,
 }
 
-/// A picture that is added to the right one, as often as fits best.
+/// A picture that is added to the right one, times the factor that fits best.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fit {
     /// The right picture itself: a factor of brightness.
     Gain,
-    /// The right picture, one pixel to the right, as if a pixel began with the mean of the one before.
+    /// The right picture, one pixel to the right, as if each pixel began with the mean of the one before.
     Carry,
 }
 
@@ -100,7 +100,7 @@ impl Hypothesis {
         }
     }
 
-    /// The steps of the plain tracer, which is then the one to render the picture.
+    /// Switches to the plain tracer and returns its steps.
     pub fn plain(&mut self) -> &mut Steps {
         self.steps.get_or_insert(Steps::OF_THE_BOOK)
     }
@@ -138,7 +138,7 @@ impl Rendered {
         self.map(|half| reduced(half, width, factor))
     }
 
-    /// This picture with the change from one to another, which share random numbers, so that most noise cancels.
+    /// This picture plus the difference of two others, which share random numbers so that most noise cancels.
     pub fn changed(&self, from: &Rendered, to: &Rendered) -> Rendered {
         let half = |half: usize| {
             let pixels = self.halves[half].iter().zip(&from.halves[half]).zip(&to.halves[half]);
@@ -182,7 +182,7 @@ impl Studio {
     }
 
     /// Renders a hypothesis, smaller by a factor. Pictures larger than [`PIXELS`] get the same number of paths, and the
-    /// plain tracer gets fewer; it leaves out the pixels that `mask` leaves out.
+    /// plain tracer gets fewer; it skips the pixels that `mask` excludes.
     pub fn halves(
         &mut self,
         hypothesis: &Hypothesis,
@@ -262,7 +262,7 @@ pub fn rough(seen: &Seen, mut hypothesis: Hypothesis, rendered: Rendered) -> (Hy
         // The render's own noise does not count as an error.
         let [a, b] = halves.each_ref().map(|half| half[index / 3][index % 3]);
         let noise = 0.25 * (a - b).powi(2);
-        // Displayed values as the reader sees them; our noise would weigh itself.
+        // Converted to display values at the reader's brightness: at ours, noise would affect its own weight.
         let square = ((seen - expected).powi(2) - noise) / (4.0 * seen.max(0.02));
         known += f64::from(u8::from(seen.is_finite()));
         if square.is_finite() {
@@ -318,7 +318,7 @@ pub fn compare(seen: &Seen, mut hypothesis: Hypothesis, rendered: Rendered) -> C
     }
 }
 
-/// Less brightness than this is not a mistake.
+/// A fitted factor below this is not a mistake.
 const LEAST_FIT: f64 = 0.009;
 
 /// The rendered picture with what the hypothesis adds to it.
@@ -370,7 +370,7 @@ fn misfit(test: &BlockTest, values: &[[f64; 3]], expected: &[[f64; 3]], width: u
             count += 1;
         }
     }
-    // If nothing is known of a picture, nothing is explained.
+    // Without any known value, nothing is explained.
     if count == 0 { f64::INFINITY } else { sum / count as f64 }
 }
 
@@ -396,8 +396,8 @@ impl Slope {
     }
 }
 
-/// What a hypothesis leaves of the reader's picture, to be regressed on directions, pixel by pixel. Noise of the renders
-/// does not bias it: each product is of different halves.
+/// The residual of the reader's picture under a hypothesis, regressed on directions, pixel by pixel. The noise of the
+/// renders does not bias it, since each product combines different halves.
 pub struct Rest<'a> {
     seen: &'a Seen,
     from: &'a Rendered,
@@ -428,8 +428,8 @@ impl<'a> Rest<'a> {
         Rest { seen, from, blocks, weights }
     }
 
-    /// How far it leads in the direction of another picture, in the whole picture and in each ninth of it. With
-    /// `is_local`, the means of the blocks are left out, so that only details count.
+    /// How far the residual leads in the direction of another picture: over the whole picture, then over each ninth of
+    /// it. With `is_local`, the means of the blocks are left out, so that only details count.
     pub fn slopes(&self, to: &Rendered, is_local: bool) -> [Slope; 10] {
         let width = self.seen.size[0] as usize;
         let (mut products, mut squares, mut scatters) = ([0.0; 10], [0.0; 10], [0.0; 10]);

@@ -133,7 +133,7 @@ fn alike_below(misfit: f64) -> f64 {
     3.0 * misfit.max(0.0) + ALIKE
 }
 
-/// Judges a picture, of `stage` if that is known. Calls `say` with each thing that it tries.
+/// Judges a picture, of `stage` if that is known. Reports each attempt to `say`.
 pub fn judge(mine: &Mine, stage: Option<&'static Stage>, mut say: impl FnMut(String)) -> Result<Finding> {
     if let Some(stage) = stage {
         return judge_of(mine, stage, &mut say);
@@ -204,7 +204,7 @@ fn judge_among(
     if let Some(found) = best.mistake.as_ref().filter(|_| best.is_sure && !best.is_other_right()) {
         let limit = alike_below(found.misfit);
         for other in findings {
-            // The right picture of another stage may be meant.
+            // The reader may have meant another stage, whose right picture this is.
             best.is_sure &= other.right.misfit >= limit;
             let is_as_close = other.mistake.as_ref().is_some_and(|found| found.misfit < limit);
             let named = other.named().filter(|_| other.is_sure && is_as_close);
@@ -314,7 +314,7 @@ impl<'a> Trial<'a> {
         let grain = grain(self.mine, &nearest.seen, &nearest.found);
         let is_near = nearest.found.misfit < NEARLY;
         let grain = grain.map(|grain| Grain { altered: grain.altered.filter(|_| is_near), ..grain });
-        // If the stage does not fit, the noise says nothing.
+        // If the stage does not fit, the noise tells nothing.
         let grain = grain.filter(|grain| is_near || grain.samples >= SAMPLES_LEAST);
         // The sky, which has no noise, is most of what is compared.
         let grain = grain.filter(|_| self.mine.ignored.is_none());
@@ -397,7 +397,7 @@ impl<'a> Trial<'a> {
         let mut fine: Vec<(Hypothesis, Option<Vec<bool>>)> = Vec::new();
         let mut ranked = Vec::new();
         let edges = edges(&self.right.expected, [width, height]);
-        // Where everything is blurred or cheap, not only edges are looked at.
+        // Where everything is blurred, or cheap to trace, more than the edges are compared.
         let is_masked = recipe.rules.has_bounces() && recipe.camera.defocus_angle_degrees == 0.0;
         for hypothesis in all_mistakes(&recipe).into_iter().filter(|it| is_wanted(it.mistake)) {
             let is_only_scaled = hypothesis.is_right_before_writing(&recipe)
@@ -406,7 +406,7 @@ impl<'a> Trial<'a> {
                 fine.push((hypothesis, None));
                 continue;
             }
-            // The mask of what is compared is for this shape.
+            // The mask of compared pixels has this shape.
             if self.mine.ignored.is_some() && hypothesis.written.order.exchanges_sides() {
                 continue;
             }
@@ -443,7 +443,7 @@ impl<'a> Trial<'a> {
         ranked.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
         let least = ranked.first().map_or(right_misfit, |(misfit, ..)| misfit.min(right_misfit));
         let is_far = |misfit: f64| misfit > FAR * least.max(0.0) + NEARLY;
-        // What leads on from the right picture, or shows at its edges, does not matter if the picture is far from it.
+        // Far from the right picture, slopes and edges do not matter.
         if is_far(right_misfit) {
             ranked.retain(|(misfit, ..)| !is_far(*misfit));
             fine.retain(|(hypothesis, _)| !hypothesis.is_fine);
@@ -507,7 +507,7 @@ fn fits(candidates: &[Candidate], index: usize, recipe: &Recipe) -> bool {
         if own.mistake.map(|mistake| mistake.id) == theirs.mistake.map(|mistake| mistake.id) {
             return true;
         }
-        // What is written otherwise may have a mistake besides.
+        // A file that is written differently may contain another mistake, too.
         let is_besides = own.is_right_before_writing(recipe)
             && own.fit.is_none()
             && theirs.written == Written::right(recipe);
@@ -584,7 +584,7 @@ fn edges(expected: &[[f64; 3]], [width, height]: [usize; 2]) -> Vec<bool> {
         if x == 0 || y == 0 || x + 1 == width || y + 1 == height {
             return false;
         }
-        // The operator of Sobel.
+        // The Sobel operator.
         (0..3).any(|channel| {
             let step = |by: usize, along: usize| {
                 let of = |at: usize| expected[at + by][channel] - expected[at - by][channel];
@@ -631,7 +631,7 @@ fn all_mistakes(recipe: &Recipe) -> Vec<Hypothesis> {
     applying_to(recipe).filter(is_compared).flat_map(|mistake| mistake.pictures(recipe)).collect()
 }
 
-/// The stages that the picture resembles most, as rendered right or written wrongly, or, if `is_thorough`, with any
+/// The stages that the picture resembles most, rendered correctly or written wrongly, or, if `is_thorough`, with any
 /// mistake.
 fn candidates(mine: &Mine, is_thorough: bool, mut say: impl FnMut(String)) -> Result<Vec<&'static Stage>> {
     let factor = factor([mine.width, mine.height], true);

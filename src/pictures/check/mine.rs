@@ -12,7 +12,7 @@ const SIZE_MIN: [u32; 2] = [16, 9];
 
 const PIXEL_LIMIT: u64 = 4_000_000;
 
-/// Memory that a check takes at most for each pixel; 2,700 were measured.
+/// Upper limit on the memory of a check, bytes per pixel; 2,700 were measured.
 const PIXEL_BYTES: u64 = 3000;
 
 /// An 8-bit picture, as the reader's program wrote it.
@@ -80,7 +80,7 @@ impl Mine {
         Ok(mine)
     }
 
-    /// Reads the rows of a file that is still being written; `None` if there is nothing to see yet, or all of it.
+    /// Reads the rows of a file that is still being written; `None` if nothing can be shown yet, or the file is complete.
     pub fn begun(path: &Path) -> Option<Mine> {
         let Incomplete { picture, .. } = read_picture(path, None).err()?.downcast().ok()?;
         let mut mine = Mine::of(*picture).ok()?;

@@ -1,5 +1,5 @@
-//! The table of mistakes that readers of the book are known to make, and of other ways to be right: explanation, where
-//! each can show, and how to render it.
+//! The table of common mistakes of the book's readers, and of other ways to be right: explanation, where each can show,
+//! and how to render it.
 
 use super::hypothesis::{Fit, Hypothesis, Mistake};
 use super::tracer::{Random, on_circle, reflectance, schlick};
@@ -15,12 +15,12 @@ const SAME_POINT: &str = "use one point twice: `ray(ray_origin, pixel_sample - r
 
 const BRIGHTER: &str = "nothing is wrong, but it is brighter than the book's picture, which takes the square root in write_color";
 
-const UNIT_VECTOR: &str = "draw points of the cube -1..1 until one is inside the unit sphere, then normalise it: `random_unit_vector()`";
+const UNIT_VECTOR: &str = "draw points in the cube -1..1 until one is inside the unit sphere, then normalise it: `random_unit_vector()`";
 
 const ATTENUATION: &str = "return `attenuation * ray_color(scattered, depth - 1, world)`";
 
-/// Each row: id, the section to reread, title, remedy, in which recipes it can show, in which sections it is right
-/// (`"*"`: in all), and how to render it.
+/// Each row: id, section to reread, title, remedy, the recipes in which it can show, the sections in which it is right
+/// (`"*"`: all), and how to render it.
 macro_rules! mistakes {
     ($($id:literal, $section:literal, $title:literal, $remedy:expr, $applies:expr, $right_in:expr, $($change:expr),*;)*) => {
         /// All mistakes, those of the file and the camera first.
@@ -45,7 +45,7 @@ mistakes! {
     "no-gamma", "9.5", "gamma is missing",
         "take the square root of each channel in `write_color`, after dividing by the samples",
         has_gamma, NEVER, |it| it.written.curve = Encoding::Gamma(1.0);
-    "gamma-early", "9.5", "gamma is applied, though this section does not have it yet",
+    "gamma-early", "9.5", "gamma is applied, although this section does not use it yet",
         "nothing is wrong if you have read on; section 9.5 adds the square root",
         |recipe| recipe.rules.transfer == Transfer::Linear,
         ALWAYS, |it| it.written.curve = Encoding::Gamma(2.0);
@@ -57,12 +57,12 @@ mistakes! {
     "gamma-srgb", "9.5", "the curve is that of sRGB, not the square root",
         BRIGHTER, has_gamma, NEVER, |it| it.written.curve = Encoding::Srgb;
     "wraps-to-0", "8.2", "the brightest values become 0",
-        "clamp before the conversion: `int(256 * clamp(x, 0, 0.999))`; 256 does not fit into a byte, where it becomes 0",
+        "clamp before the conversion: `int(256 * clamp(x, 0, 0.999))`; 256 does not fit into a byte and becomes 0",
         always, NEVER, |it| it.written.wraps = true;
-    "scale-255", "8.2", "channels are multiplied by 255 and cut off",
+    "scale-255", "8.2", "channels are multiplied by 255 and truncated",
         "use `int(256 * clamp(x, 0, 0.999))`, or 255.999: with 255, only a value of exactly 1 becomes 255",
         always, NEVER, |it| it.written.levels = 255.0;
-    "truncated", "3.1", "channels are cut to whole numbers before they are scaled",
+    "truncated", "3.1", "channels are truncated to whole numbers before they are scaled",
         "scale first, then convert: `int(256 * x)`, not `int(x) * 256`; divide as floating-point numbers",
         always, NEVER, |it| it.written.truncates = true;
     "no-antialiasing", "8.2", "all samples pass through the centre of the pixel",
@@ -104,7 +104,7 @@ mistakes! {
         "let hits begin at 0.001: `world.hit(r, interval(0.001, infinity), rec)`",
         |recipe| has_bounces(recipe) && recipe.rules.surface != SurfaceRule::Acne && recipe.rules.diffuse != Diffuse::Hemisphere,
         NEVER, |it| it.plain().t_min = Some(0.0);
-    "acne-early", "9.3", "rays hit the surface that they start on (shadow acne), as the listings of 9.1 and 9.2 have it",
+    "acne-early", "9.3", "rays hit the surface that they start on (shadow acne), as in the listings of 9.1 and 9.2",
         "nothing is wrong yet; section 9.3 lets hits begin at 0.001, which removes the acne",
         |recipe| has_matte(recipe, Diffuse::Hemisphere),
         ALWAYS, |it| it.plain().t_min = Some(0.0), |it| {
@@ -125,7 +125,7 @@ mistakes! {
         "let the direction be `rec.normal + random_unit_vector()`",
         |recipe| has_matte(recipe, Diffuse::Lambertian),
         NEVER, |it| it.recipe.rules.diffuse = Diffuse::Hemisphere;
-    "lambertian-early", "9.4", "matte surfaces are Lambertian, though this section is uniform over the hemisphere",
+    "lambertian-early", "9.4", "matte surfaces are Lambertian, although this section uses a uniform hemisphere",
         "nothing is wrong if you have read on; section 9.4 adds it",
         |recipe| has_matte(recipe, Diffuse::Hemisphere),
         ALWAYS, |it| it.recipe.rules.diffuse = Diffuse::Lambertian;
@@ -140,7 +140,7 @@ mistakes! {
     "fuzz-missing", "10.6", "fuzz has no effect",
         "add `fuzz * random_unit_vector()` to the reflected direction, and store `fuzz` in the constructor",
         has_fuzz, NEVER, |it| materials(it, no_fuzz);
-    "fuzz-unnormalised", "10.6", "fuzz is added to a reflected direction of another length than 1",
+    "fuzz-unnormalised", "10.6", "the reflected direction is not normalised before fuzz is added",
         "normalise first: `reflected = unit_vector(reflected) + (fuzz * random_unit_vector())`",
         has_fuzz, NEVER, |it| it.plain().before_fuzz = |direction| direction;
     "refract-unnormalised", "11.2", "the direction is not normalised before it is refracted or reflected",
@@ -200,7 +200,7 @@ mistakes! {
         "seed the generator once, before the loops, not for each pixel",
         |recipe| recipe.rules.antialiasing && has_bounces(recipe),
         NEVER, |it| it.plain().random = |_| 0;
-    "rounds", "8.2", "values are rounded to the nearest of 255 steps, not cut off",
+    "rounds", "8.2", "values are rounded to the nearest of 255 steps, not truncated",
         "nothing is wrong", always, ALWAYS, |it| (it.written.rounds, it.written.levels) = (true, 255.0);
     "rotated", "12.2", "the picture is turned by 180 degrees",
         "with `w = unit_vector(look_from - look_at)`: `u = unit_vector(cross(vup, w))` and `v = cross(w, u)`, in this order",
@@ -216,7 +216,7 @@ mistakes! {
         "write `image_width` first, then `image_height`", always, NEVER, |it| exchange(it, Order::Exchanged);
     "planar", "2.2", "all red values come first, then all green ones, then all blue ones",
         "write the three values of a pixel one after the other", always, NEVER, |it| it.written.order = Order::Planar;
-    "row-length", "2.2", "the rows have another length than the header says",
+    "row-length", "2.2", "the rows are not as long as the header says",
         "let i run from 0 to `image_width - 1`, and write the same `image_width` to the header; a PPM has no padding",
         always, NEVER, |it| it.written.order = Order::Long, |it| it.written.order = Order::Short,
         |it| it.written.order = Order::Padded;
@@ -226,7 +226,7 @@ mistakes! {
     "gradient-turned", "2.2", "red follows the rows and green the columns",
         "red is `i / (image_width - 1)`, green is `j / (image_height - 1)`",
         is_gradient, NEVER, |it| it.plain().gradient = |[x, y], _| DVec3::new(y, x, 0.0);
-    "edition-gradient", "2.2", "the colours are those of an older edition, which has blue and lets the rows count from below",
+    "edition-gradient", "2.2", "the colours are those of an older edition, with blue and with rows counted from the bottom",
         "nothing is wrong; since edition 4, blue is 0 and green grows downwards", is_gradient, ALWAYS,
         |it| older_gradient(it, |[x, y], _| DVec3::new(x, y, 0.25)),
         |it| older_gradient(it, |_, [x, y]| DVec3::new(x, y, 0.2));
@@ -246,7 +246,7 @@ mistakes! {
             it.written.curve = Encoding::Gamma(2.0);
         };
     "edition-scene", "10.5", "scene and camera are those of an older edition",
-        "nothing is wrong; edition 4 has other colours, places and views", |recipe| has_metal(recipe), ALWAYS,
+        "nothing is wrong; edition 4 changed the colours, positions and views", |recipe| has_metal(recipe), ALWAYS,
         |it| older_scene(it, 0.4), |it| {
             older_scene(it, 0.4);
             it.plain().fuzz = Random::in_unit_sphere;
@@ -263,7 +263,7 @@ mistakes! {
     "listing-79", "11.5", "the golden ball has fuzz 0, as listing 79 of the book prints it",
         "nothing is wrong; the listing has a misprint: the book's picture has `metal(color(0.8, 0.6, 0.2), 1.0)`",
         |recipe| has_bubble(recipe) && recipe.camera == Camera::BOOK, ALWAYS, |it| materials(it, no_fuzz);
-    "reflectance", "9.5", "the surfaces reflect another share of the light than 50 %",
+    "reflectance", "9.5", "the surfaces do not reflect 50 % of the light",
         "nothing is wrong if you do the exercise of 9.5; the book's picture has 50 %",
         |recipe| has_bounces(recipe) && recipe.scene.materials.len() == 1 && !recipe.rules.reflectance_strips, ALWAYS,
         |it| grey(it, 0.1), |it| grey(it, 0.3), |it| grey(it, 0.7), |it| grey(it, 0.9);
@@ -271,7 +271,7 @@ mistakes! {
         "divide the sum of a pixel's samples by their number, exactly once, before the square root",
         has_rays, NEVER, |it| it.fit = Some(Fit::Gain);
     "sum-kept", "8.2", "the sum of a pixel begins with the colour of the one before",
-        "set `pixel_color` to `color(0, 0, 0)` inside of the loop over the pixels",
+        "set `pixel_color` to `color(0, 0, 0)` inside the loop over the pixels",
         |recipe| recipe.rules.antialiasing, NEVER, |it| it.fit = Some(Fit::Carry);
     "wide-filter", "8.2", "the samples of a pixel are spread too widely, so the picture is blurred",
         "draw the offsets from -0.5..0.5: `vec3(random_double() - 0.5, random_double() - 0.5, 0)`",
@@ -283,7 +283,7 @@ mistakes! {
         |it| it.plain().aspect = |_, _| 1.0,
         |it| it.plain().aspect = |width, height| f64::from(height) / f64::from(width);
     "backwards", "12.2", "the camera looks backwards",
-        "`w = unit_vector(look_from - look_at)` points back: subtract `focus_dist * w` from the center, and do not add it",
+        "`w = unit_vector(look_from - look_at)` points back: subtract `focus_dist * w`, do not add it",
         has_rays, NEVER, look_back, |it| {
             look_back(it);
             it.written.order = Order::Mirrored;
@@ -291,7 +291,7 @@ mistakes! {
             look_back(it);
             it.written.order = Order::Rotated;
         };
-    "vfov-tangent", "12.1", "the tangent is not of half the field of view",
+    "vfov-tangent", "12.1", "the tangent is not taken of half the field of view",
         "`h = std::tan(theta / 2)`, and `viewport_height = 2 * h * focus_dist`", has_rays, NEVER,
         |it| field_of_view(it, |half| (2.0 * half).tan()), |it| field_of_view(it, |half| (half / 2.0).tan()),
         |it| field_of_view(it, |half| half.tan() / 2.0), |it| field_of_view(it, |half| 2.0 * half.tan());
@@ -311,20 +311,20 @@ mistakes! {
         |it| it.plain().sky = |direction| 0.5 * (direction.normalize().z + 1.0),
         |it| it.plain().sky = |_| 1.0, |it| it.plain().sky = |_| 0.0;
     "far-root", "6.2", "the farther of the two roots is used",
-        "try `(h - sqrtd) / a` first, and `(h + sqrtd) / a` only if that is outside of the interval", has_solids, NEVER,
+        "try `(h - sqrtd) / a` first, and `(h + sqrtd) / a` only if that is outside the interval", has_solids, NEVER,
         |it| it.plain().roots = |a, h, c| [(h + (h * h - a * c).sqrt()) / a; 2],
         |it| it.plain().roots = |a, h, c| [1.0, -1.0].map(|sign| (h + sign * (h * h - a * c).sqrt()) / a);
     "near-root-only", "6.2", "only the nearer root is tried",
-        "if `(h - sqrtd) / a` is outside of the interval, try `(h + sqrtd) / a`", has_solids, NEVER,
+        "if `(h - sqrtd) / a` is outside the interval, try `(h + sqrtd) / a`", has_solids, NEVER,
         |it| it.plain().roots = |a, h, c| [(h - (h * h - a * c).sqrt()) / a; 2];
     "a-missing", "6.2", "the quadratic formula lacks a, as if directions had length 1",
         "`a = r.direction().length_squared()`, in the discriminant and below both roots", has_solids, NEVER,
         |it| it.plain().roots = |_, h, c| [-1.0, 1.0].map(|sign| h + sign * (h * h - c).sqrt()),
         |it| it.plain().roots = |a, h, c| [-1.0, 1.0].map(|sign| h + sign * (h * h - a * c).sqrt());
     "no-t-min", "6.3", "surfaces behind the start of a ray are hit",
-        "accept a root only if it is inside of the interval: `ray_t.surrounds(root)`", has_solids, NEVER,
+        "accept a root only if it is inside the interval: `ray_t.surrounds(root)`", has_solids, NEVER,
         |it| it.plain().t_min = Some(f64::NEG_INFINITY);
-    "point-at-unit", "6.2", "the hit point is computed with the normalised direction, but t belongs to the other",
+    "point-at-unit", "6.2", "the hit point is computed with the normalised direction, but t belongs to the original",
         "`rec.p = r.at(rec.t)`, which is `origin + t * direction`", has_solids, NEVER, |it| it.plain().along = DVec3::normalize;
     "normal-reversed", "6.1", "the normal points inwards",
         "`outward_normal = (rec.p - center) / radius`, not `center - rec.p`", has_solids, NEVER,
@@ -335,10 +335,10 @@ mistakes! {
     "normal-colour", "6.1", "normals are shown without being moved to 0..1",
         "return `0.5 * color(N.x() + 1, N.y() + 1, N.z() + 1)`", |recipe| recipe.rules.shading == Shading::Normals, NEVER,
         |it| it.plain().normal_colour = |normal| normal, |it| it.plain().normal_colour = DVec3::abs;
-    "ground", "6.5", "the ground has another size or place",
+    "ground", "6.5", "the ground has the wrong size or position",
         "`make_shared<sphere>(point3(0, -100.5, -1), 100)`", |recipe| ground(&recipe.scene).is_some(), NEVER,
         |it| move_ground(it, 1000.0, -1000.5), |it| move_ground(it, 100.0, -100.0), |it| move_ground(it, 100.0, -101.0);
-    "vector-0-to-1", "9.1", "random vectors point only to where x, y and z are positive",
+    "vector-0-to-1", "9.1", "random vectors only have positive x, y and z",
         UNIT_VECTOR, has_bounces, NEVER, |it| vector(it, |random| random.triple().normalize()), |it| vector(it, Random::triple);
     "vector-cube", "9.1", "random vectors are drawn from a cube, so directions crowd at its corners",
         UNIT_VECTOR, has_bounces, NEVER, |it| vector(it, |random| (2.0 * random.triple() - 1.0).normalize()),
@@ -351,7 +351,7 @@ mistakes! {
         "return `on_unit_sphere` if `dot(on_unit_sphere, normal) > 0.0`, else `-on_unit_sphere`", has_bounces, NEVER,
         |it| it.plain().scatter = Some(|v, normal, _| if v.dot(normal) > 0.0 { -v } else { v }),
         |it| it.plain().scatter = Some(|v, normal, _| v - normal);
-    "hemisphere-missing", "9.1", "directions point to all sides, into the surface as well",
+    "hemisphere-missing", "9.1", "directions point everywhere, even into the surface",
         "use `random_on_hemisphere(rec.normal)`, or `rec.normal + random_unit_vector()`", has_bounces, NEVER,
         |it| it.plain().scatter = Some(|v, _, _| v);
     "scatter-to-point", "9.4", "matte surfaces scatter from the origin of space, not from the point",
@@ -372,11 +372,11 @@ mistakes! {
         "return `v - 2 * dot(v, n) * n`", |recipe| has_metal(recipe) || has_glass(recipe), NEVER, |it| it.plain().reflects = 1.0;
     "fuzz-below", "10.6", "fuzzy reflections that point below the surface are not absorbed",
         "return `(dot(scattered.direction(), rec.normal) > 0)`", has_fuzz, NEVER, |it| it.plain().absorbs_below = false;
-    "fuzz-scaled", "10.6", "fuzz has another size", "`reflected = unit_vector(reflected) + (fuzz * random_unit_vector())`",
+    "fuzz-scaled", "10.6", "fuzz has the wrong size", "`reflected = unit_vector(reflected) + (fuzz * random_unit_vector())`",
         has_fuzz, NEVER, |it| it.plain().fuzz = |random| 2.0 * random.unit_vector(),
         |it| it.plain().fuzz = |random| 0.5 * random.unit_vector(), |it| it.plain().fuzz = Random::triple,
         |it| it.plain().fuzz = |random| 2.0 * random.triple() - 1.0;
-    "origin-moved", "11.2", "bounced rays start above the surface, and refracted ones should not",
+    "origin-moved", "11.2", "bounced rays start above the surface, even refracted ones",
         "start at `rec.p`, and let hits begin at 0.001", has_bounces, NEVER, |it| it.plain().lift = 0.001,
         |it| it.plain().lift = 0.01, |it| it.plain().lift = 0.1;
     "refract-outwards", "11.2", "the refracted direction leaves on the wrong side",
@@ -387,7 +387,7 @@ mistakes! {
             it.plain().swaps_glass = true;
             it.recipe.rules.dielectric = DielectricLaws::RefractOnly;
         };
-    "schlick-power", "11.4", "Schlick's formula has another power than 5",
+    "schlick-power", "11.4", "Schlick's formula uses a power other than 5",
         "return `r0 + (1 - r0) * std::pow(1 - cosine, 5)`", has_schlick, NEVER,
         |it| it.plain().reflectance = |cosine, ratio| reflectance(schlick(1.0, ratio), cosine, 1),
         |it| it.plain().reflectance = |cosine, ratio| reflectance(schlick(1.0, ratio), cosine, 2),
@@ -403,13 +403,13 @@ mistakes! {
     "glass-tinted", "11.2", "glass absorbs light", "set `attenuation = color(1.0, 1.0, 1.0)` in `dielectric::scatter`", has_glass, NEVER,
         |it| it.plain().glass = DVec3::splat(0.9), |it| it.plain().glass = DVec3::splat(0.8),
         |it| it.plain().glass = DVec3::splat(0.5), |it| it.plain().glass = DVec3::new(0.5, 0.7, 1.0);
-    "lens-radius", "13.2", "the lens has another radius, so the blur is too weak or too strong",
+    "lens-radius", "13.2", "the lens has the wrong radius, so the blur is too weak or too strong",
         "`defocus_radius = focus_dist * std::tan(degrees_to_radians(defocus_angle / 2))`", has_lens, NEVER,
         |it| lens(it, |half, focus| half.tan() / focus), |it| lens(it, |half, _| (2.0 * half).tan()),
         |it| lens(it, |half, _| 0.5 * half.tan()), |it| lens(it, |half, _| half.to_degrees().tan().abs()),
         |it| lens(it, |half, focus| 2.0 * half.tan() / focus);
     "lens-disk", "13.2", "the points on the lens are not spread evenly over a disk",
-        "draw points of the square -1..1 until one is inside the unit disk", has_lens, NEVER,
+        "draw points in the square -1..1 until one is inside the unit disk", has_lens, NEVER,
         |it| fine(it).plain().disk = |pair| pair.map(|x| 2.0 * x - 1.0),
         |it| fine(it).plain().disk = |[u, v]| on_circle(u, v), |it| fine(it).plain().disk = |[_, v]| on_circle(1.0, v);
 }
@@ -427,9 +427,9 @@ fn swap(picture: &mut Hypothesis, order: [usize; 3]) {
     picture.written.channels = order;
 }
 
-/// Cuts paths off at `limit` rays, if they may be longer.
+/// Limits paths to `limit` rays.
 fn limit(picture: &mut Hypothesis, limit: u32) {
-    picture.note = Some(format!("it looks as with max_depth = {limit}"));
+    picture.note = Some(format!("it looks like max_depth = {limit}"));
     let max_depth = &mut picture.recipe.settings.max_depth;
     *max_depth = limit.min(*max_depth);
 }
@@ -469,7 +469,7 @@ fn edition_3_diffuse(picture: &mut Hypothesis, t_min: f64, gamma: f64) {
     picture.written.curve = Encoding::Gamma(gamma);
 }
 
-/// Balls, colours and metal of the editions before 4.
+/// Balls, colours and metal of older editions.
 fn older_scene(picture: &mut Hypothesis, bubble_radius: f64) {
     let scene = Arc::make_mut(&mut picture.recipe.scene);
     let material = |name: &str| scene.materials.iter().position(|named| named.name == name);
@@ -526,7 +526,7 @@ fn no_fuzz(material: &mut Material) {
 }
 
 fn grey(picture: &mut Hypothesis, share: f64) {
-    picture.note = Some(format!("it looks as with {:.0} %", 100.0 * share));
+    picture.note = Some(format!("it looks like {:.0} %", 100.0 * share));
     materials(picture, |_| {});
     for named in &mut Arc::make_mut(&mut picture.recipe.scene).materials {
         named.material = Material::Lambertian { albedo: DVec3::splat(share) };

@@ -99,7 +99,7 @@ fn each(options: &CheckOptions) -> Result<ExitCode> {
     Ok(worst.exit_code())
 }
 
-/// One line for each verdict: as text, and as JSON if that is asked for.
+/// One line for each verdict: as text, and as JSON if requested.
 struct Lines<'a> {
     json: Option<&'a Path>,
     written: String,

@@ -1,5 +1,5 @@
-//! What the noise of a picture tells: how many samples it has, whether something has changed the picture since, and whether
-//! all pixels share their random numbers.
+//! What the noise of a picture reveals: its number of samples, whether something has altered the picture since, and
+//! whether all pixels share their random numbers.
 
 use super::Mine;
 use super::hypothesis::{Compared, Hypothesis, Mistake, blocks_of, pixels_of};
@@ -12,19 +12,19 @@ use std::collections::HashSet;
 /// for independent pixels, and 4 for a slope.
 const SMOOTHED: f64 = 1.25;
 
-/// Squares of 8 x 8 pixels, which JPEG treats by themselves, differ at their borders by this much more than at any other
-/// eighth column and row.
+/// JPEG compresses blocks of 8 x 8 pixels separately. Differences across their borders exceed those across any other
+/// eighth column and row by this factor.
 const SQUARES: f64 = 1.15;
 
-/// Most colours of a palette, and how many times as many our picture must have.
+/// Maximum number of colours in a palette, and how many times as many our picture must have.
 const PALETTE: [usize; 2] = [256, 4];
 
-/// The grain of a picture beside the right one.
+/// The grain of a picture, compared with the right one.
 #[derive(Clone, Copy, Debug)]
 pub struct Grain {
     /// Samples per pixel that give such noise.
     pub samples: f64,
-    /// What shows that this is not the file that a ray tracer has written.
+    /// Why the file did not come straight from a ray tracer.
     pub altered: Option<&'static str>,
 }
 
@@ -96,7 +96,7 @@ fn field(blocks: &[(Block, [f64; 3])], width: usize, value: impl Fn(usize, usize
     }
 }
 
-/// The grain of what is seen, if the picture that comes closest has noise.
+/// The grain of the reader's picture; `None` if the closest picture has no noise.
 pub fn grain(mine: &Mine, seen: &Seen, right: &Compared) -> Option<Grain> {
     let blocks = noisy(right);
     if blocks.len() < 8 {
@@ -116,7 +116,7 @@ pub fn grain(mine: &Mine, seen: &Seen, right: &Compared) -> Option<Grain> {
     let own = 2.0 * 0.75 * single / right.rendered.samples as f64;
     let [near, far] = [found.near - own, found.far - own];
     let altered = if has_squares(mine) {
-        Some("it has the squares of JPEG")
+        Some("it has the blocks of JPEG")
     } else if has_palette(mine, &right.hypothesis.written.bytes_of(&mean, right.hypothesis.size())) {
         Some("it has a palette of few colours")
     } else if far > SMOOTHED * near.max(0.1 * own) {
@@ -153,14 +153,14 @@ fn has_palette(mine: &Mine, ours: &[[u8; 3]]) -> bool {
     found <= most && colours(ours) > times * found
 }
 
-/// Realisations of a picture whose pixels share their random numbers, with which the reader's is compared.
+/// How many pictures whose pixels share random numbers the reader's is compared with.
 const REALISATIONS: u32 = 4;
 
 /// Largest excess over the realisations: more samples have less noise, so the steps of bytes show.
 const LIKE: f64 = 2.2;
 
-/// Whether what is seen differs from the right picture as pictures do whose pixels share random numbers: each of those
-/// is another picture, so the smoothness of the difference and how evenly it is spread are compared.
+/// Whether the reader's picture differs from the right one as if its pixels shared random numbers. Each generator gives
+/// a different picture, so only the smoothness of the difference and how evenly it is spread are compared.
 pub fn is_shared(seen: &Seen, right: &Compared, mistake: &'static Mistake) -> bool {
     let blocks = noisy(right);
     if blocks.len() < 8 {

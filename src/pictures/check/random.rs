@@ -11,7 +11,7 @@ use anyhow::Result;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// How many scenes are compared, each with other random numbers, and one without small spheres.
+/// Number of scenes compared: each with different random numbers, and one without small spheres.
 const SCENES: u64 = 7;
 
 /// Samples per pixel of their pictures.
@@ -60,7 +60,7 @@ pub fn fixed<'a>(mine: &'a Mine, stage: &Stage) -> Result<Cow<'a, Mine>> {
     };
     let depends: Vec<bool> =
         (0..columns * rows).map(|cell| (0..3).any(|channel| spread(cell, channel) > EQUAL)).collect();
-    // A cell beside one that depends may do so in yet another scene.
+    // The neighbours of a dependent cell may depend in yet another scene.
     let is_ignored = |pixel: usize| {
         let (x, y) = ((pixel % width / CELL).min(columns - 1), (pixel / width / CELL).min(rows - 1));
         let near = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
@@ -70,7 +70,7 @@ pub fn fixed<'a>(mine: &'a Mine, stage: &Stage) -> Result<Cow<'a, Mine>> {
     Ok(Cow::Owned(Mine { ignored: Some(ignored), ..mine.clone() }))
 }
 
-/// Puts what is not compared into our picture, from a scene with small spheres.
+/// Fills the pixels of our picture that are not compared, from a scene with small spheres.
 pub fn complete(ours: &mut Compared, ignored: Option<&[bool]>, stage: &Stage) -> Result<()> {
     let Some(ignored) = ignored else { return Ok(()) };
     let mut studio = Studio::new(stage.recipe(), ours.hypothesis.size())?;

@@ -139,8 +139,8 @@ fn bytes_and_linear_values_correspond() {
 }
 
 #[test]
-fn a_picture_is_read_in_the_order_in_which_it_was_written() {
-    // Five columns and three rows; each value is another.
+fn files_are_read_in_the_order_written() {
+    // Five columns and three rows; all values differ.
     let size = [5, 3];
     let pictures: Vec<[f64; 3]> =
         (0..15).map(|at| [0.0, 1.0, 2.0].map(|c| (3.0 * f64::from(at) + c + 0.5) / 256.0)).collect();
@@ -200,13 +200,13 @@ fn misfit_is_displayed_error_beyond_noise() {
     let chequers = |x: u32, y: u32| [[140, 160][((x + y) % 2) as usize]; 3];
     let (mean, apart) = (middle(150.0) - 0.5, 10.0_f64 / 256.0);
     close(misfit(&chequers, &|_, _| [0.5; 3]), (mean * mean - apart * apart / 63.0) / 2.0);
-    // Values beyond the range of bytes are no error.
+    // Values beyond the range of bytes are not errors.
     close(misfit(&|_, _| [255, 0, 255], &|_, _| [2.0, 0.0, 1.0]), 0.0);
     // Each row has its own transfer.
     let halves = |_: u32, y: u32| if y < 8 { [64; 3] } else { [128; 3] };
     let (_, found) = compared([16, 16], Transfer::LinearAboveGamma2, halves, |_, _| [0.25; 3]);
     assert!(found.misfit < 1e-5 && found.is_noise, "{}", found.misfit);
-    // Noise is no error; more than noise is.
+    // Noise is not an error; anything beyond it is.
     let noise = |x: u32, y: u32, c: u32| (crate::kernel::sampling::pcg4d([x, y, c, 5])[0] >> 27) as u8;
     for (more, is_noise) in [(0, true), (12, false)] {
         let bytes = |x: u32, y: u32| [0, 1, 2].map(|c| 100 + more + noise(x, y, c));
@@ -228,7 +228,7 @@ fn a_slope_tells_how_far_a_direction_leads() {
     let edge = |x: u32| if x % 16 < 8 { 0.2 } else { 0.6 };
     let right = Hypothesis::right(&recipe("sky"));
     for share in [0.0, 0.3, 1.0] {
-        // Beside the edges, the picture goes a share of the way to another.
+        // Beside the edges, the picture goes part of the way to another.
         let way = |x: u32| if x % 16 == 9 { -0.3 } else { 0.0 };
         let shown = of(&|x, y, c| edge(x) + share * way(x) + noise(x, y, c));
         let mine = picture_of(right.written.bytes_of(&shown, size), size);
@@ -242,7 +242,7 @@ fn a_slope_tells_how_far_a_direction_leads() {
 }
 
 #[test]
-fn the_right_picture_of_every_stage_is_right_without_the_stage() {
+fn right_pictures_pass_without_naming_the_stage() {
     for stage in Stage::ALL {
         let mut studio = Studio::new(stage.recipe(), [160, 90]).unwrap();
         let mut right = Hypothesis::right(studio.recipe());
@@ -257,7 +257,7 @@ fn the_right_picture_of_every_stage_is_right_without_the_stage() {
 
 /// Every program places the small spheres of 14.1 elsewhere.
 #[test]
-fn the_final_picture_is_checked_where_it_is_not_random() {
+fn final_picture_is_checked_where_it_is_not_random() {
     let stage = Stage::find("book").unwrap();
     let size = [160, 90];
     let mut studio = Studio::new(stage.recipe(), size).unwrap();
@@ -284,15 +284,15 @@ fn the_final_picture_is_checked_where_it_is_not_random() {
     );
 }
 
-/// A verdict is earned by the picture: other bytes than ours alone name nothing.
+/// Bytes that differ from ours are not enough to name a mistake.
 #[test]
-fn what_only_resembles_a_mistake_is_not_named_surely() {
+fn resemblance_is_not_certainty() {
     let stage = Stage::find("lambertian-gamma").unwrap();
     let size = [160, 90];
     let mut studio = Studio::new(stage.recipe(), size).unwrap();
     let right = Hypothesis::right(studio.recipe());
     let linear = studio.render(&right, 256).unwrap();
-    // Light that only the lower right gets: smooth, and as faint as noise.
+    // Light that only the lower right receives: smooth, and as faint as noise.
     let faint = |index: usize| {
         let (x, y) = ((index % 160) as f64 / 160.0, (index / 160) as f64 / 90.0);
         0.06 * (x * y).powi(2) * (9.0 * x).sin()

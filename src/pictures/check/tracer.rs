@@ -23,7 +23,7 @@ pub struct Steps {
     pub gradient: fn([f64; 2], [f64; 2]) -> DVec3,
     /// Width of the square over which the samples of a pixel are spread, pixels.
     pub filter: f64,
-    /// Least distance of a hit; `None` for the stage's.
+    /// Minimum distance of a hit; `None` for the stage's.
     pub t_min: Option<f64>,
     /// Upper limit on a hit's distance, given the closest hit so far.
     pub t_max: fn(f64) -> f64,
@@ -49,7 +49,7 @@ pub struct Steps {
     pub scatter: Option<fn(DVec3, DVec3, DVec3) -> DVec3>,
     /// What a bounce off a surface of this albedo adds to the light, and the factor of what comes after it.
     pub combine: fn(DVec3) -> [DVec3; 2],
-    /// The share of the normal's part that a reflection takes away: 2 in the book.
+    /// How many times a reflection subtracts the component along the normal: 2 in the book.
     pub reflects: f64,
     /// Transforms the reflected direction before fuzz is added.
     pub before_fuzz: fn(DVec3) -> DVec3,
@@ -59,7 +59,7 @@ pub struct Steps {
     pub before_glass: fn(DVec3) -> DVec3,
     /// Probability that glass reflects, from the cosine and the ratio of the refraction indices.
     pub reflectance: fn(f64, f64) -> f64,
-    /// Factor of a refracted direction's part along the normal.
+    /// Factor of a refracted direction's component along the normal.
     pub inwards: f64,
     /// Attenuation of glass.
     pub glass: DVec3,

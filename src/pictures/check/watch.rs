@@ -9,13 +9,13 @@ use std::process::ExitCode;
 use std::thread::sleep;
 use std::time::{Duration, Instant, SystemTime};
 
-/// How often a file is looked at.
+/// Interval between looks at a file.
 pub const POLL_INTERVAL: Duration = Duration::from_millis(200);
 
 /// A file that ends early counts as truncated after this long without a change.
 const SETTLED: Duration = Duration::from_secs(3);
 
-/// Share of the rows from which on a growing picture is judged.
+/// Share of the rows that a growing picture needs before it is judged.
 const ROWS_LEAST: f64 = 0.4;
 
 /// A file's length and modification time, which change with its content.
@@ -26,7 +26,7 @@ fn stamp(path: &Path) -> Stamp {
     Some((found.len(), found.modified().ok()))
 }
 
-/// A picture that is judged whenever its file has changed.
+/// A picture that is judged whenever its file changes.
 #[derive(Debug)]
 pub struct Watched {
     path: PathBuf,
@@ -42,7 +42,7 @@ impl Watched {
         Watched { path: path.to_owned(), seen: (None, Instant::now()), is_told: false, rows: 0, last: None }
     }
 
-    /// The picture, and what `judge` finds in it, if there is something new. `judge` is given what was found last. Call it
+    /// The picture and the finding of `judge`; `None` if nothing is new. `judge` receives the previous finding. Call it
     /// every [`POLL_INTERVAL`].
     pub fn judged(
         &mut self,
@@ -55,7 +55,7 @@ impl Watched {
         }))
     }
 
-    /// What is new: the picture, perhaps with some of its rows only, or why it cannot be read.
+    /// What is new: the picture, possibly with only some of its rows, or why it cannot be read.
     fn look(&mut self) -> Option<Result<Mine>> {
         let now = stamp(&self.path);
         let has_changed = now != self.seen.0;
@@ -77,7 +77,7 @@ impl Watched {
             return self.grown().map(Ok);
         }
         let read = Mine::read(&self.path);
-        // Changed while it was read.
+        // It changed while it was read.
         if stamp(&self.path) != now || read.is_err() && !is_settled {
             return None;
         }
@@ -89,7 +89,7 @@ impl Watched {
     fn grown(&mut self) -> Option<Mine> {
         let mine = Mine::begun(&self.path)?;
         let least = (ROWS_LEAST * f64::from(mine.height)) as u32;
-        // A row that is judged costs as much as the whole picture, so they are judged in few steps.
+        // Judging a few rows costs as much as judging the whole picture, so a picture grows in few steps.
         if mine.rows < least.max(self.rows + mine.height / 5) {
             return None;
         }

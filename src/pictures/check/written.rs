@@ -14,11 +14,11 @@ pub struct Written {
     pub curve: Encoding,
     /// Factor from displayed values to bytes.
     pub levels: f64,
-    /// Whether values are rounded instead of cut off.
+    /// Whether values are rounded instead of truncated.
     pub rounds: bool,
     /// Whether 256 becomes 0 instead of 255.
     pub wraps: bool,
-    /// Whether displayed values are cut to whole numbers before they are scaled.
+    /// Whether displayed values are truncated to whole numbers before they are scaled.
     pub truncates: bool,
 }
 
@@ -96,11 +96,11 @@ pub const EQUAL: f64 = 0.015;
 #[derive(Clone, Debug)]
 pub struct Seen {
     pub size: [u32; 2],
-    /// NaN where the file does not tell.
+    /// NaN where the file leaves the value open.
     pub values: Vec<[f64; 3]>,
     /// Half of the step between neighbouring values.
     pub half_steps: Vec<[f64; 3]>,
-    /// Differences of means that say nothing.
+    /// Largest difference of means that is ignored.
     pub tolerance: f64,
 }
 
@@ -146,7 +146,7 @@ impl Seen {
     }
 }
 
-/// Linear values between these, of a picture that is cut to whole numbers early, may have become either end.
+/// If values are truncated before they are scaled, linear values in this range may have become 0 or 1.
 const NEARLY_WHITE: [f64; 2] = [0.9, 0.9995];
 
 impl Written {
@@ -176,7 +176,7 @@ impl Written {
         (self.levels * displayed.min(0.999) + if self.rounds { 0.5 } else { 0.0 }) as u8
     }
 
-    /// The byte that the reader's program had before it wrapped, as far as ours tells.
+    /// The byte that the reader's program had before it wrapped, judged by our picture.
     fn unwrapped(&self, byte: u8, expected: impl Fn() -> f64) -> u8 {
         if self.wraps && byte == 0 && expected() > 0.5 { 255 } else { byte }
     }
@@ -187,7 +187,7 @@ impl Written {
         linear.iter().enumerate().map(|(index, pixel)| pixel.map(|x| byte(index, x))).collect()
     }
 
-    /// What [`Seen`] has in place of these linear values, without noise: as far as the file's range reaches.
+    /// These linear values as [`Seen`] would have them without noise: clipped to the range of the file.
     pub fn predicted(&self, seen: &Seen, linear: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let [width, height] = seen.size.map(|side| side as usize);
         let rows = linear.chunks(width.max(1)).enumerate();

@@ -7,10 +7,10 @@ use crate::stages::Transfer;
 /// A hint follows if a change leaves less than this share of the difference.
 const MUCH: f64 = 0.5;
 
-/// Most pixels that are compared. In a larger picture, they are spread evenly.
+/// Maximum number of pixels compared. In a larger picture, they are spread evenly.
 const MOST: usize = 1 << 20;
 
-/// Names the change that brings the second picture much closer to the first, if there is one.
+/// Names the change that brings the second picture much closer to the first.
 pub(super) fn hint(a: &Picture, b: &Picture) -> Option<String> {
     let [width, height] = [b.width, b.height].map(|side| side as usize);
     let at = |x: usize, y: usize| b.pixels[y.min(height - 1) * width + x.min(width - 1)];

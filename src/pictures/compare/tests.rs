@@ -253,7 +253,7 @@ fn difference_is_relative_to_both_steps() {
 }
 
 #[test]
-fn fewer_levels_are_no_difference() {
+fn fewer_levels_do_not_differ() {
     let directory = tempfile::tempdir().unwrap();
     let read = |most: u32, is_rounded: bool, brighter: f64| {
         let mut file = format!("P6 64 64 {most} ").into_bytes();

@@ -309,7 +309,7 @@ fn judge(comparison: &mut Comparison, clipped: usize) {
         first.map(|[column, row]| {
             format!(
                 "{differing} channels of {differing_pixels} pixels are NaN or infinite in only one picture, the first at \
-                 {column},{row}: find out what made them"
+                 {column},{row}: find out what produced them"
             )
         }),
         (excess > SUM_DEVIATIONS).then(|| {
@@ -327,7 +327,7 @@ fn judge(comparison: &mut Comparison, clipped: usize) {
     comparison.reasons = reasons.into_iter().flatten().collect();
 }
 
-/// Adds what to know about the figures.
+/// Adds the caveats for reading the figures.
 fn note(comparison: &mut Comparison) {
     let Comparison { test, is_same, left_out, non_finite: NonFinite { alike, .. }, .. } = comparison;
     let notes = [

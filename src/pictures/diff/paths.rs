@@ -25,7 +25,7 @@ pub struct PathComparison {
     pub first: Option<Difference>,
     /// First difference after which the paths are no longer the same. Their numbers may drift apart before that.
     pub parting: Option<Difference>,
-    /// Largest difference before the paths part.
+    /// Largest difference before the paths diverge.
     pub largest: f64,
     /// Relative difference of the radiances.
     pub radiance: f64,
@@ -99,7 +99,7 @@ impl Pair<'_> {
                 }),
                 apart(departures[0] != departures[1]),
             ],
-            // If only one side has this ray, the paths have parted.
+            // If only one side has this ray, the paths have diverged.
             _ => [f64::INFINITY; 6],
         };
         let vectors = |of: fn(&RecordedRay) -> [f64; 3]| rays.map(|ray| ray.map(|ray| vector(of(ray))));
@@ -147,8 +147,8 @@ impl Pair<'_> {
         }
     }
 
-    /// A difference as a sentence: `ray 2: the paths part by object: cpu avx2 #7 glass (dielectric), gpu the sky`. Rays
-    /// count from 1, as in the window.
+    /// A difference as a sentence: `ray 2: the paths diverge in object: cpu avx2 #7 glass (dielectric), gpu the sky`.
+    /// Rays count from 1, as in the window.
     pub fn sentence(&self, difference: &Difference) -> String {
         let Difference { ray, quantity, amount } = *difference;
         let allowed = format!("by {amount:.1e}, but only {:.0e} is allowed", self.tolerance);
@@ -162,7 +162,7 @@ impl Pair<'_> {
         let values = row.map_or([None, None], |row| row.values);
         let [a, b] = values.map(|value| value.unwrap_or("nothing".to_owned()).trim().to_owned());
         let [name_a, name_b] = self.names;
-        format!("ray {}: the paths part by {quantity}: {name_a} {a}, {name_b} {b}", ray + 1)
+        format!("ray {}: the paths diverge in {quantity}: {name_a} {a}, {name_b} {b}", ray + 1)
     }
 
     /// `#7 glass (dielectric)`, with a printable name of the material, or the sky.

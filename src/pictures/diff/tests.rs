@@ -36,7 +36,7 @@ fn first_difference_is_found_and_described() {
         (1, "throughput", |p| p.rays[1].throughput[1] = 0.99, "ray 2: throughput differs by 1.0e-2"),
         (0, "object", |p| p.rays[0].hit = None, "the sky"),
         (0, "distance", |p| p.rays[0].hit.as_mut().unwrap().distance = 2.002, "distance differs by 1.0e-3"),
-        (0, "departure", |p| p.rays.truncate(1), "ray 1: the paths part by departure: cpu "),
+        (0, "departure", |p| p.rays.truncate(1), "ray 1: the paths diverge in departure: cpu "),
         (1, "radiance", |p| p.radiance[0] = 0.26, "differ by 1.0e-2, but only 1e-4 is allowed"),
     ];
     let job = job();
@@ -81,7 +81,7 @@ fn nothing_counts_after_paths_part() {
     let verdict = pair.verdict(&found);
     assert!(
         verdict.starts_with("ray 1: direction")
-            && verdict.contains(". Then ray 2: the paths part by object: cpu the sky")
+            && verdict.contains(". Then ray 2: the paths diverge in object: cpu the sky")
     );
 }
 
@@ -152,7 +152,7 @@ fn unpaired_rays_are_shown() {
         assert!(both.contains("ray 1 from the camera") && !both.contains('▶'), "{text}");
         let row = |label: &str| one.lines().find(|line| line.contains(label)).unwrap();
         assert!(row("▶ origin").contains("2.000000") && row("object").contains("the sky"), "{text}");
-        assert!(one.contains("ray 2: the paths part by origin") && !text.contains("ray 3"), "{text}");
+        assert!(one.contains("ray 2: the paths diverge in origin") && !text.contains("ray 3"), "{text}");
     }
 }
 

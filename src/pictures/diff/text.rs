@@ -21,7 +21,7 @@ pub fn text(pair: &Pair, comparison: &PathComparison) -> String {
     lines.iter().map(|line| line.trim_end().to_owned() + "\n").collect()
 }
 
-/// A quantity on both sides, followed by a sentence at the first difference and where the paths part.
+/// A quantity on both sides, followed by a sentence at the first difference and where the paths diverge.
 fn lines_of(row: &Row, index: usize, pair: &Pair, comparison: &PathComparison) -> Vec<String> {
     let sign = match &row.values {
         [None, None] => return Vec::new(),
