@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn rays_are_as_many_as_the_renderer_counts() {
+    fn ray_counts_match_the_renderer() {
         use crate::job::render::Renderer;
         use crate::render_cpu::{CpuOptions, CpuRenderer};
         let mut recipe = Recipe::builtin("three-spheres").unwrap();

@@ -112,7 +112,7 @@ impl BackendChoice {
 /// # Errors
 /// If it is not available; the error says what is.
 pub fn create(choice: &BackendChoice) -> Result<Box<dyn Renderer>> {
-    log::info!("the backend is to be {choice:?}");
+    log::info!("creating the backend {choice:?}");
     Ok(match choice {
         BackendChoice::Cpu(options) => Box::new(CpuRenderer::new(*options)?),
         BackendChoice::Gpu(options) => Box::new(GpuRenderer::new(options.clone())?),
@@ -185,7 +185,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_backend_is_fallen_back_to_once() {
+    fn each_fallback_is_tried_once() {
         let low_priority = CpuOptions { low_priority: true, ..CpuOptions::default() };
         let mut failed = vec![BackendChoice::Both(low_priority, GpuOptions::default())];
         while let Some(next) = BackendChoice::fallback(&failed) {

@@ -259,7 +259,7 @@ fn work_off(
     let is_lost = |piece: &Range<u64>| !piece.is_empty() && film.samples().overlap(piece).is_none();
     let lost: Vec<Range<u64>> = taken.into_iter().filter(is_lost).collect();
     if share.error.is_none() && !lost.is_empty() {
-        let reason = "it did not add the samples that it was to trace".to_owned();
+        let reason = "it did not add all of its samples".to_owned();
         share.error = Some(RenderError::Backend { backend: name, reason });
     }
     pieces.lock().unwrap_or_else(PoisonError::into_inner).left.extend(lost);

@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn loss_of_samples_is_warned_of() {
+    fn loss_of_samples_causes_a_warning() {
         let directory = tempfile::tempdir().unwrap();
         let film = directory.path().join("k.exr").to_str().unwrap().to_owned();
         put(Path::new(&film), &options(&[]), 0..32);

@@ -26,8 +26,8 @@ use std::time::{Duration, Instant};
 /// Renders the missing frames. A signal drops the frame in progress.
 ///
 /// # Errors
-/// [`Failure::Input`] if nothing was rendered; [`Failure::BrokeOff`] if a render failed but earlier frames are whole;
-/// [`Failure::Run`] otherwise.
+/// [`Failure::Input`] if nothing was rendered; [`Failure::BrokeOff`] if a render failed but earlier frames are
+/// complete; [`Failure::Run`] otherwise.
 pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
     make_directory(&options.names.directory).map_err(Failure::Input)?;
     let first = options.names.path(options.frames.start);
@@ -120,7 +120,7 @@ impl Run<'_> {
                 self.warnings.push(warning.to_owned());
             }
             Event::Stopping => {
-                self.display.say(&format!("dropping frame {frame}; the frames before it are whole"));
+                self.display.say(&format!("dropping frame {frame}; the frames before it are complete"));
             }
             Event::Status(_, status) => {
                 let (done, count) = (self.done(), self.options.frames.len() as u32);

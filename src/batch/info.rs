@@ -1,4 +1,4 @@
-//! `weekender info`: what a film, picture, scene file or plan says about itself.
+//! `weekender info`: the metadata of a film, picture, scene file or plan.
 
 use crate::cli::InfoOptions;
 use crate::cli::terminal::{print, write_json};
@@ -15,10 +15,10 @@ use serde_json::{Value, json};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Version of the JSON. It is raised when a key changes its meaning or is removed.
+/// Version of the JSON. Incremented when a key is removed or changes meaning.
 const SCHEMA: u32 = 1;
 
-/// Prints what the file says about itself.
+/// Prints the metadata of a file.
 ///
 /// # Errors
 /// [`Failure::Input`] if the file cannot be read or does not say how it was made; [`Failure::Run`] if standard output
@@ -107,7 +107,7 @@ impl Info {
         }))
     }
 
-    /// Adds what a film says and, if there is memory for its sums, its error.
+    /// Adds the metadata of a film and, if there is memory for its sums, its error.
     fn with_film(self, path: &Path) -> anyhow::Result<Info> {
         let head = match checkpoint::read_head(path) {
             Err(CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. }) => return Ok(self),
@@ -138,7 +138,7 @@ impl Info {
         Ok(Info { error: Some(error), ..info })
     }
 
-    /// A line for each thing that the file says.
+    /// One line per entry.
     fn text(&self, path: &Path) -> String {
         let text = |key: &str| match &self.json[key] {
             Value::Null => None,

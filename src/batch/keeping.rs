@@ -8,8 +8,8 @@ use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::thread::Builder;
 use std::time::Instant;
 
-/// Has the film written at intervals, from a copy on its own thread. Without memory for a copy, the tracer waits while
-/// it is written.
+/// Writes the film at intervals, from a copy and on a separate thread. Without memory for a copy, the tracer waits for
+/// the write.
 pub(super) struct Keeper {
     files: Arc<Files>,
     /// When the last write ended.
@@ -86,7 +86,7 @@ impl Keeper {
             Err(reason) => {
                 // Retry even without new samples.
                 self.asked = 0;
-                Some(format!("{reason}; rendering continues, and writing will be tried again"))
+                Some(format!("{reason}; rendering continues, and the write will be retried"))
             }
         }
     }
@@ -124,7 +124,7 @@ mod tests {
             },
         );
         assert!(matches!(status.phase, Phase::Done(_)), "{status:?}");
-        assert!(warnings[0].contains("will be tried again"), "{warnings:?}");
+        assert!(warnings[0].contains("will be retried"), "{warnings:?}");
         let kept = keeper.finish().unwrap();
         assert_eq!(checkpoint::load(&path).unwrap().film.sample_count(), kept);
         assert!(kept > 0 && kept <= progressive.take_film().unwrap().sample_count());

@@ -38,7 +38,7 @@ pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
             "a plan already names its parts: merge it alone, then merge the result with the other files",
         ),
         _ if options.check => refuse(
-            "--check needs a plan: only a plan says which parts there should be; make one with `weekender plan`",
+            "--check needs a plan: only a plan says which parts to expect; make one with `weekender plan`",
         ),
         films => merge(films, options),
     }
@@ -99,7 +99,8 @@ fn merge_parts(plan: &Plan, options: &MergeOptions) -> Result<ExitCode, Failure>
     let (film, [start, end]) = (sum.film(), plan.manifest.samples);
     let (samples, count, of) = (film.samples(), film.sample_count(), end - start);
     let (whole, all) = (parts.len() - lacking.len(), parts.len());
-    let found = format!("{count} of {of} samples per pixel ({samples}); {whole} of {all} parts are whole\n");
+    let found =
+        format!("{count} of {of} samples per pixel ({samples}); {whole} of {all} parts are complete\n");
     if options.check {
         let lines = lines.iter().map(|line| format!("{line}\n"));
         print(&std::iter::once(found).chain(lines).collect::<String>()).map_err(Failure::Run)?;

@@ -9,7 +9,7 @@ use crate::system::interrupt::Interrupt;
 use anyhow::Context;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Renders one picture after the other with one backend.
+/// Renders one picture after another with one backend.
 pub struct Studio<'a> {
     backend: &'a BackendChoice,
     renderer: Option<Box<dyn Renderer>>,

@@ -11,7 +11,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Version of the JSON. It is raised when a key changes its meaning or is removed.
+/// Version of the JSON. Incremented when a key is removed or changes meaning.
 pub(super) const SCHEMA: u32 = 1;
 
 /// Time and quality of one picture. Times and counts are those of this run; samples per pixel, rejected samples and the

@@ -3,8 +3,8 @@
 use super::{FIXED_POINT_SCALE, Film, PixelSum, ROUNDING_LIMIT};
 use std::f64::consts::SQRT_2;
 
-/// An estimate of the picture's error from its two halves. Never below what rounding can cost, which halves that round
-/// alike do not show.
+/// An estimate of the picture's error from its two halves. Never below what rounding can cost, because halves that
+/// round alike hide that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorEstimate {
     /// Root of the mean squared error over pixels and channels, linear radiance, at least [`ROUNDING_LIMIT`].
@@ -61,8 +61,8 @@ impl Film {
     /// The error estimated from the halves. With `A` and `B` the means of `a` and `b` samples, and `s` and `t` the parts
     /// of `mean((A - B)^2)` that are their variances, `MSE = mean((A - B)^2) (s a^2 + t b^2) / (a + b)^2`. This is a
     /// quarter of the squared difference when `a = b`, as after every even number of samples. The root is at least
-    /// [`ROUNDING_LIMIT`]. `None` with one half, while a half has no samples, and while all of it is black, because equal
-    /// halves say nothing of light that no path has found.
+    /// [`ROUNDING_LIMIT`]. `None` with one half, while a half has no samples, and while all of it is black, because
+    /// equal halves say nothing about light that no path has found.
     pub fn error(&self) -> Option<ErrorEstimate> {
         let [half_a, half_b] = self.halves.as_slice() else { return None };
         let (count_a, count_b) = (self.half_sample_count(0) as f64, self.half_sample_count(1) as f64);
@@ -142,8 +142,8 @@ impl Film {
     }
 
     /// The parts of the squared difference between the halves that are the variance of each. Where one half has more
-    /// samples, how much less its variance is depends on the sampler and the scene. The steps from pixel to pixel tell:
-    /// apart from their noise, both halves have the same steps.
+    /// samples, how much less its variance is depends on the sampler and the scene. The steps from pixel to pixel
+    /// reveal it: apart from noise, they are the same in both halves.
     pub(crate) fn variance_shares(&self) -> [f64; 2] {
         let counts = [0, 1].map(|half| self.half_sample_count(half));
         let [a, b] = counts.map(|count| count as f64 * FIXED_POINT_SCALE);

@@ -26,7 +26,7 @@ impl Film {
         pixels
     }
 
-    /// The picture in 8 bits: `transfer`, then `floor(256 clamp(v, 0, .999))`; top row first.
+    /// The picture in 8 bits: `transfer`, then `floor(256 clamp(v, 0, 0.999))`; top row first.
     pub fn to_rgb8(&self, transfer: Transfer) -> Vec<u8> {
         self.exposed(transfer, 0.0)
     }
@@ -42,7 +42,7 @@ impl Film {
     /// so several threads can share a picture.
     ///
     /// # Panics
-    /// If a row is below the picture, or `bytes` has another length.
+    /// If a row is below the picture, or `bytes` has the wrong length.
     pub fn resolve_rows(&self, rows: Range<u32>, transfer: Transfer, bytes: &mut [u8]) {
         self.resolve_sums(rows, transfer, self.fixed_point_of_1(), bytes);
     }

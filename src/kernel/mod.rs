@@ -5,7 +5,7 @@
 //! - [`packed`]: the records that shaders read and write word by word.
 //! - [`constants`] and [`tags`]: numbers, and enumerations that shaders represent as numbers.
 //! - [`features`]: properties of a job that need code in a kernel. They select the variant on the CPU and the pipeline
-//!   overrides on the GPU, and provide the words of summaries.
+//!   overrides on the GPU, and name the kernel's parts in summaries.
 //!
 //! [`wgsl`] passes all of these declarations to the shaders as text.
 

@@ -270,7 +270,7 @@ record! {
 }
 
 record! {
-    /// Counters since the film was last fetched.
+    /// Counters since the last readback of the film.
     #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
     pub struct GpuCounters as "Counters" {
         /// Rays traced, low word.

@@ -92,7 +92,7 @@ impl Baseline {
             });
             while !reader.is_finished() {
                 if cancel.load(Ordering::Relaxed) {
-                    // Fails if the process has just ended by itself.
+                    // Fails if the process has just ended on its own.
                     let _ = child.kill();
                 }
                 std::thread::sleep(POLL);

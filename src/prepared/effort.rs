@@ -13,7 +13,7 @@ pub enum Effort {
 
 #[derive(Clone, Copy)]
 pub(super) struct Leaves {
-    /// Most spheres in a leaf.
+    /// Maximum number of spheres in a leaf.
     pub most: u32,
     /// Cost of a packet's visit to a node, in sphere tests. Higher costs make fuller leaves.
     visit_cost: f32,

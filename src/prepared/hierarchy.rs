@@ -18,7 +18,7 @@ use std::sync::atomic::AtomicBool;
 
 pub use super::effort::Effort;
 
-/// Most levels of a tree, limited by the traversal's stack.
+/// Maximum number of levels of a tree, limited by the traversal's stack.
 pub const DEPTH_LIMIT: usize = STACK_SIZE;
 
 /// Numbers of spheres for which a thorough build beats a quick one and fits time and memory.
@@ -86,7 +86,7 @@ impl<R: Real> Hierarchy<R> {
         let mut ranks = Vec::with_capacity(trees.iter().map(|region| region.ranks.len()).sum());
         let (mut rest, mut deepest) = (top.nodes.len() as u32, 0);
         let levels = levels(&top.nodes);
-        // Where the nodes of each region but its root go, and where its spheres do.
+        // How far the nodes of each region, except its root, and its spheres move.
         let mut shifts = Vec::with_capacity(trees.len());
         for (node, level) in top.nodes.iter().zip(levels) {
             if !node.is_leaf() {

@@ -31,7 +31,7 @@ use std::time::{Duration, Instant};
 /// 4 spheres and the hierarchy a tenth faster with 48; between 12 and 32 they were equally fast.
 const HIERARCHY_MIN_SPHERES: usize = 24;
 
-/// Where a prepared scene has its hierarchy from.
+/// Where a prepared scene got its hierarchy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HierarchySource {
     /// It has no hierarchy.
@@ -87,7 +87,7 @@ pub struct PreparedScene<R> {
     pub sky_middle: [R; 3],
     /// Growth of the sky radiance with the direction's y, times `2^24`.
     pub sky_slope: [R; 3],
-    /// Most samples whose sum in units of `2^-24` fits 32 bits: a power of two.
+    /// Maximum number of samples whose sum in units of `2^-24` fits 32 bits: a power of two.
     pub block_limit: u32,
     pub settings: RenderSettings,
     /// The features that the job needs from a kernel.

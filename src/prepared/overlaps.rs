@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn tiny_distant_sphere_is_no_layer() {
+    fn tiny_distant_sphere_is_not_a_layer() {
         for center in [DVec3::new(4.0, 1.0, 0.0), DVec3::splat(-1e3), DVec3::X] {
             for radius in [1e-18, 1e-16, 1e-14] {
                 let overlaps = Overlaps::of(&scene([(center, radius), (DVec3::NEG_Y, 1.0)]));
@@ -264,7 +264,7 @@ mod tests {
         assert_eq!(layer((0.5, 1.0), (0.5, 1.0 - 10.1 * unit)), Some([10.0, 10.0]));
     }
 
-    /// Shells around one place, and coated balls that overlap, in more cells than one may have.
+    /// Shells around one place, and coated balls that overlap, more of them than a cell compares in pairs.
     #[test]
     fn layers_in_a_crowd_are_found() {
         let random =
@@ -284,7 +284,7 @@ mod tests {
             let overlaps = Overlaps::of(&scene(balls));
             assert!((0..count).all(|i| has(&overlaps, [i, i + count])), "{count}");
         }
-        // Others are between the two of a pair.
+        // Here, others come between the two of a pair.
         let place = |i: u32| DVec3::new(random(i % 50, 3), random(i % 50, 4), random(i % 50, 5));
         let balls = (0..100).map(|i| (place(i) + DVec3::X * 0.008 * f64::from(i / 50), 1.4));
         let overlaps = Overlaps::of(&scene(balls));

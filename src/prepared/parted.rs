@@ -21,7 +21,7 @@ pub(super) const FEW_SPHERES: usize = 2048;
 /// With this many spheres in nested runs, a scene counts as crowded.
 const CROWD: usize = 1024;
 
-/// Most clusters that [`ROUNDS`] of pairing may leave.
+/// Maximum number of clusters that [`ROUNDS`] of pairing may leave.
 const LEFT_ALONE: usize = 256;
 
 /// Rounds of pairing. Millions of scattered spheres end as one cluster.

@@ -18,11 +18,11 @@ use std::time::Duration;
 /// From this many spheres on, a quick build divides them.
 const MANY: usize = 40_000;
 
-/// Most spheres in a region, unless they share a place: enough for all threads to be busy until the end, and few enough
-/// for a core's cache.
+/// Bounds on the maximum number of spheres in a region, unless they share a place: enough regions to keep all threads
+/// busy until the end, each small enough for a core's cache.
 const REGION_LIMITS: [usize; 2] = [4096, 1 << 16];
 
-/// Regions that a scene is divided into if the limits allow, about.
+/// Approximate number of regions in a scene, if the limits allow.
 const WANTED_REGIONS: usize = 64;
 
 /// How a tree is built. Each way gives at most as many levels as the one before.
@@ -159,7 +159,7 @@ mod tests {
     #[test]
     fn regions_are_disjoint_and_hold_every_sphere_once() {
         let mut spheres = field(60_000).0.spheres;
-        // More than a region's most in one place.
+        // More in one place than a region may have.
         spheres.extend([spheres[7]; 6000]);
         let bounded = Bounded::all(&spheres, &DVec3::ZERO);
         let (order, mut regions) = divided(&bounded, Effort::Quick, Method::Clustered);

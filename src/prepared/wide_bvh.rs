@@ -1,7 +1,7 @@
 //! The GPU's hierarchy, with eight children per node. obvhs builds the tree and orders the children of a node by octant.
 //! (Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs".) Its boxes
-//! are compressed to 8 bits per bound; this module computes boxes that are not, because the GPU decodes for longer than
-//! it reads.
+//! are compressed to 8 bits per bound; this module computes boxes in full precision, because decoding takes the GPU
+//! longer than reading.
 
 use super::bounded::Bounded;
 use super::effort::{Effort, Leaves};
@@ -16,10 +16,10 @@ use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 use obvhs::cwbvh::node::CwBvhNode;
 use std::sync::atomic::AtomicBool;
 
-/// Most spheres in a leaf: a node's marks have room for 3.
+/// Maximum number of spheres in a leaf: a node's marks have room for 3.
 const LEAF_SPHERES: u32 = 3;
 
-/// Most levels of a tree, limited by the traversal's stack.
+/// Maximum number of levels of a tree, limited by the traversal's stack.
 pub const DEPTH_LIMIT: usize = WIDE_STACK_SIZE;
 
 /// Rows of four words in a node. Twin: `NODE_ROWS` in shaders/bvh.wgsl.

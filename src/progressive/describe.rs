@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn all_who_rendered_are_named() {
+    fn all_backends_are_named() {
         let info = |name: &'static str, lanes| BackendInfo { name, device: "x".into(), lanes, threads: 1 };
         let part =
             |name, lanes, samples_per_pixel| Contribution { backend: info(name, lanes), samples_per_pixel };

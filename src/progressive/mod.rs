@@ -229,7 +229,7 @@ impl Progressive {
         self.act_here(false);
     }
 
-    /// Lets the worker act if it has no thread of its own. Returns whether that is so.
+    /// Lets the worker act if it has no thread of its own. Returns whether it did.
     fn act_here(&self, renders: bool) -> bool {
         let worker = self.here.as_ref().map(|worker| worker.lock().unwrap_or_else(PoisonError::into_inner));
         worker.map(|mut worker| worker.act(renders)).is_some()

@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn backends_with_other_options_are_credited_apart() {
+    fn backends_with_other_options_are_credited_separately() {
         let info = |lanes| BackendInfo { name: "cpu", device: "x".to_owned(), lanes, threads: 1 };
         let mut status = Status::default();
         for (lanes, samples) in [(8, 4), (1, 2), (8, 16)] {

@@ -50,8 +50,9 @@ impl ReferenceMeans {
     }
 }
 
-/// The standard error of a pixel's mean, linear RGB, estimated from the halves, as if their variances were inverse to their
-/// numbers of samples. [`Film::error`] measures how far that is so; the two are equal after even numbers of samples.
+/// The standard error of a pixel's mean, linear RGB, estimated from the halves, assuming that their variances are
+/// inversely proportional to their numbers of samples. [`Film::error`] measures how far that holds; the two are equal
+/// after even numbers of samples.
 pub fn standard_error(film: &Film, pixel: usize) -> Option<[f64; 3]> {
     let [half_a, half_b] = film.halves() else { return None };
     let (a, b) = (film.half_sample_count(0) as f64, film.half_sample_count(1) as f64);
@@ -154,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn halves_of_different_counts_are_weighed() {
+    fn halves_are_weighted_by_their_counts() {
         // Two samples of 3 in one half, one of 0 in the other: (3 - 0)^2 2 1 / 3^2.
         let mut film = Film::new(1, 1, 2);
         film.halves_mut()[0][0] = PixelSum([6 << 24; 3]);
@@ -207,7 +208,7 @@ mod tests {
     #[test]
     fn brightness_is_shown_in_stops() {
         let mut film = Film::new(1, 1, 1);
-        // Luminance: .7152 / 4 + .0722 / 4 + .2126 / 4 = 1/4, the middle of the scale.
+        // Luminance: 0.7152 / 4 + 0.0722 / 4 + 0.2126 / 4 = 1/4, the middle of the scale.
         film.halves_mut()[0][0] = PixelSum([1 << 22; 3]);
         film.record(0..1, 0).unwrap();
         let shown = |view: View| view.resolve(&film, Transfer::Linear, None);

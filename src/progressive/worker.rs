@@ -121,7 +121,7 @@ impl Worker {
             RenderCommand::Switch(choice) => render.switch(choice, &self.factory),
             RenderCommand::SetPlan(plan) => render.set_plan(plan),
             RenderCommand::Inspect(look) => {
-                let looked = guarded("whoever looked at the film", || {
+                let looked = guarded("inspecting the film", || {
                     look(&render.film);
                     Ok(())
                 });

@@ -204,7 +204,7 @@ pub(super) fn describe_missing(traced: &[TracedTile], side: u32, width: u32) -> 
     let (x, y) = (index % columns * side as usize, index / columns * side as usize);
     let why = panic.as_ref().map_or(String::new(), |text| format!("it panicked: {text}; "));
     Some(format!(
-        "{why}of {expected} blocks of samples in the tile at pixel ({x}, {y}) {finished} were finished"
+        "{why}only {finished} of {expected} blocks of samples in the tile at pixel ({x}, {y}) were finished"
     ))
 }
 
@@ -248,12 +248,12 @@ mod tests {
         // Tiles of 8 pixels in a picture of 20: three columns.
         let mut traced: Vec<TracedTile> = [9, 9, 9, 9, 4, 9].map(tile).into();
         let reason = describe_missing(&traced, 8, 20).expect("samples are missing");
-        assert!(reason.contains("of 9 blocks") && reason.contains("pixel (8, 8) 4"), "{reason}");
+        assert!(reason.contains("only 4 of 9 blocks") && reason.contains("pixel (8, 8)"), "{reason}");
         assert_eq!(describe_missing(&traced[..4], 8, 20), None);
         traced[2].panic = Some("a slip".to_owned());
         let reason = describe_missing(&traced, 8, 20).expect("a panic");
         assert!(
-            reason.starts_with("it panicked: a slip; of 9") && reason.contains("pixel (16, 0)"),
+            reason.starts_with("it panicked: a slip; only 9") && reason.contains("pixel (16, 0)"),
             "{reason}"
         );
     }

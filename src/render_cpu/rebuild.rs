@@ -15,7 +15,7 @@ use std::time::Duration;
 /// of the time (docs/benchmarks.md). By then, its cost is about the time that it would have saved.
 const PATIENCE: u32 = 80;
 
-/// State of the better hierarchy: to be built, in work or in use.
+/// State of the better hierarchy: pending, being built, or in use.
 pub(super) struct Rebuild {
     /// Time of building the first hierarchy, and the multiple of it that is traced before a better one is begun.
     first: Duration,
@@ -49,8 +49,8 @@ impl Rebuild {
         }
     }
 
-    /// Notes how long a pass of `job` took on this many threads, and begins a better hierarchy if it is time. A single
-    /// thread is left alone: it is all that the user wants to give.
+    /// Notes how long a pass of `job` took on this many threads, and begins a better hierarchy if it is time. With a
+    /// single thread, nothing is begun: the user wants to give no more.
     pub fn note_pass(
         &mut self,
         took: Duration,
@@ -122,7 +122,7 @@ mod tests {
         renderer
     }
 
-    /// Renders some passes, each once the hierarchy in work is built.
+    /// Renders some passes, each after the hierarchy being built is finished.
     fn render(renderer: &mut CpuRenderer, job: &RenderJob) -> Film {
         let mut film = job.new_film();
         for index in PASSES {

@@ -58,7 +58,7 @@ fn recorder(isa: Isa) -> Recorder {
     let fused = level.as_avx2();
     #[cfg(target_arch = "aarch64")]
     let fused = level.as_neon();
-    // It has none that is fused, but a type.
+    // WebAssembly has no fused level; this only provides the type.
     #[cfg(target_arch = "wasm32")]
     let fused = level.as_wasm_simd128();
     match fused {
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn a_record_is_the_path_that_the_renderer_traced() {
+    fn records_match_the_rendered_paths() {
         for scene in ["three-spheres", "book"] {
             let job = small_job(scene);
             for isa in Isa::available().into_iter().map(Some).chain([None]) {

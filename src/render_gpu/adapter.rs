@@ -95,11 +95,11 @@ impl AdapterInfo {
         !self.is_software && self.lacks.is_none()
     }
 
-    /// What else can be done if this adapter's kernels cannot be compiled.
+    /// The remedy if this adapter's kernels cannot be compiled.
     pub(super) fn compiler_remedy(&self) -> &'static str {
         if self.backend == "DX12" {
-            "Direct3D compiles by FXC unless dxcompiler.dll lies beside the program: put it there, install the graphics \
-             card's Vulkan driver, or render on the CPU"
+            "Direct3D compiles with FXC unless dxcompiler.dll is beside the program: put it there, install the \
+             graphics card's Vulkan driver, or render on the CPU"
         } else {
             "choose another adapter, or render on the CPU"
         }
@@ -215,7 +215,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn only_software_counts_the_iterations_of_all_threads_in_step() {
+    fn only_software_counts_iterations_of_threads_in_step() {
         // Registers of the processor hold at least 8 threads, and no more than 64 are known.
         for (subgroup_size, expected) in [(0, 8), (4, 8), (8, 8), (16, 16), (64, 64), (128, 64)] {
             let software = AdapterInfo { subgroup_size, ..adapter("software", "Vulkan", true, None) };

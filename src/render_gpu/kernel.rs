@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 /// How often a wait for a kernel checks whether the kernel is still wanted.
 const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
-/// How long a driver may compile. The slowest known one that finishes takes some seconds.
+/// How long a driver may compile. The slowest known one that finishes takes a few seconds.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A compiled kernel.
@@ -165,7 +165,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_driver_that_does_not_stop_compiling_is_given_up() {
+    fn endless_compilation_is_given_up() {
         let (_sender, kernel) = mpsc::channel();
         let begin = Instant::now().checked_sub(PATIENCE).unwrap();
         let mut slot = Slot::Compiling(kernel, begin);

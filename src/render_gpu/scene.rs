@@ -67,8 +67,8 @@ impl SceneData {
 /// iterations together; it runs 8 threads in step, and iterations that two of them take count twice.
 pub const ITERATION_LIMIT: u32 = 1 << 15;
 
-/// Most samples in a block where the threads of a workgroup share its blocks. A thread that finds none left waits no
-/// longer than the others need for a block; each one costs the time of some rays.
+/// Maximum number of samples in a block where the threads of a workgroup share its blocks. A thread that finds none
+/// left waits no longer than the others need for a block; each one costs the time of some rays.
 pub const SHARED_BLOCK: u32 = 16;
 
 /// Iterations over lists for one ray. Twin: `iterations_over_lists` in shaders/path.wgsl.
@@ -89,7 +89,7 @@ pub struct Exported {
     pub scene_index: Vec<u32>,
     /// Iterations over lists for one ray.
     pub iterations_over_lists: u64,
-    /// Most samples in a block: a power of two.
+    /// Maximum number of samples in a block: a power of two.
     pub block_limit: u32,
     /// The origin of the buffers' coordinates, in scene coordinates.
     pub origin: DVec3,

@@ -28,7 +28,7 @@ pub enum CameraPath {
     Keyframes {
         /// The camera if there are no keyframes.
         still: Camera,
-        /// By rising frame number.
+        /// In ascending order of frames.
         keyframes: Vec<Keyframe>,
     },
 }
@@ -56,7 +56,7 @@ pub enum Turn {
 }
 
 impl Turn {
-    /// The angle of a frame in turns, exclusively between -1 and 1. Whole turns are exactly 0.
+    /// The angle of a frame in turns, strictly between -1 and 1. Whole turns are exactly 0.
     fn angle(self, frame: u32) -> f64 {
         match self {
             Turn::FramesPerTurn(frames) => f64::from(frame % frames.max(1)) / f64::from(frames.max(1)),
@@ -89,7 +89,7 @@ pub struct Keyframe {
     pub camera: Camera,
 }
 
-/// `keyframes` must have rising frame numbers; `None` if there are none.
+/// `keyframes` must be in ascending order of frames; `None` if there are none.
 fn between(keyframes: &[Keyframe], frame: u32) -> Option<Camera> {
     // Index of the first keyframe after this frame.
     let next = keyframes.partition_point(|keyframe| keyframe.frame <= frame);

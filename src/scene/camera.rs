@@ -77,7 +77,7 @@ impl Camera {
         if right(self.vup, w).is_none() {
             let reason = match self.vup {
                 DVec3::ZERO => "has no direction",
-                _ => "is parallel to the view, so nothing is up in the picture",
+                _ => "is parallel to the view, so the picture has no up direction",
             };
             let [vup, other] = [self.vup, least_aligned(w)].map(|vector| vector.to_array());
             return Err(SceneError(format!(
@@ -90,7 +90,7 @@ impl Camera {
             named("vfov_degrees"),
             self.vfov_degrees,
             (narrowest..=widest).contains(&self.vfov_degrees),
-            &format!("within {narrowest} and {widest} degrees"),
+            &format!("between {narrowest} and {widest} degrees"),
             "90 is wide, 20 is a portrait lens",
         )?;
         allowed(
@@ -108,7 +108,7 @@ impl Camera {
         };
         let distance = self.effective_focus_distance();
         let is_allowed = FOCUS_LIMITS.contains(&distance);
-        allowed(named(name), distance, is_allowed, "within 1e-18 and 1e19 scene units", remedy)
+        allowed(named(name), distance, is_allowed, "between 1e-18 and 1e19 scene units", remedy)
     }
 
     /// The focus distance in effect, scene units.

@@ -76,7 +76,7 @@ pub(super) fn position(what: impl Fn() -> String, value: DVec3) -> Result<(), Sc
     finite_vector(&what, value)?;
     components(value).into_iter().try_for_each(|(axis, x)| {
         let what = || format!("{}.{axis}", what());
-        allowed(what, x, x.abs() <= LENGTH_LIMIT, "within -1e18 and 1e18", "scale the scene down")
+        allowed(what, x, x.abs() <= LENGTH_LIMIT, "between -1e18 and 1e18", "scale the scene down")
     })
 }
 
@@ -85,7 +85,7 @@ pub(super) fn colour(what: impl Fn() -> String, value: DVec3, limit: f64) -> Res
     if value.min_element() < 0.0 || value.max_element() > limit {
         let (what, value) = (what(), value.to_array());
         return Err(SceneError(format!(
-            "{what} is {value:?}, but each component must be within 0 and {limit}"
+            "{what} is {value:?}, but each component must be between 0 and {limit}"
         )));
     }
     Ok(())

@@ -133,7 +133,7 @@ impl Material {
                 || of("refraction_index"),
                 refraction_index,
                 REFRACTION_INDEX_LIMITS.contains(&refraction_index),
-                "within 1e-9 and 1e9",
+                "between 1e-9 and 1e9",
                 "glass is about 1.5; an air bubble in glass is 1/1.5",
             ),
         }

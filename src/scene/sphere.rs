@@ -28,7 +28,7 @@ impl Sphere {
             _ => "give the sphere a size or remove it",
         };
         let is_allowed = RADIUS_LIMITS.contains(&self.radius);
-        allowed(|| of("radius"), self.radius, is_allowed, "within 1e-18 and 1e18", remedy)?;
+        allowed(|| of("radius"), self.radius, is_allowed, "between 1e-18 and 1e18", remedy)?;
         if self.material >= material_count {
             return Err(missing_material(index, &self.material.to_string()));
         }

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{self, Duration};
 
-/// The longest gap between two readings that counts. Readings come every [`BEAT`].
+/// The longest gap between two readings that counts in full. Readings come every [`BEAT`].
 const LONGEST_GAP: Duration = Duration::from_secs(1);
 
 const BEAT: Duration = Duration::from_millis(100);
@@ -26,7 +26,7 @@ impl Instant {
                 thread::sleep(BEAT);
                 Instant::now();
             };
-            // Without the thread, the readings of a render have to do.
+            // Without the thread, the readings that a render takes must suffice.
             drop(thread::Builder::new().name("clock".to_owned()).spawn(beat));
             (now, Duration::ZERO)
         });

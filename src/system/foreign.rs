@@ -1,7 +1,7 @@
 //! What libraries print on standard error, kept apart from the program's own messages.
 
 /// Runs `work`, during which graphics drivers may print messages of their own, such as "error: XDG_RUNTIME_DIR is
-/// invalid" on a server, which would read as the program's. They go to the log instead.
+/// invalid" on a server, which would look like the program's own. They go to the log instead.
 pub fn logged<T>(work: impl FnOnce() -> T) -> T {
     let captured = Captured::begin();
     let result = work();
@@ -17,8 +17,8 @@ pub struct Captured {
 }
 
 impl Captured {
-    /// Begins to redirect standard error; [`console`](super::console) still reaches the original. Does nothing on other
-    /// systems than Linux, if the system refuses, or if standard error is already redirected.
+    /// Begins to redirect standard error; [`console`](super::console) still reaches the original. Does nothing on
+    /// systems other than Linux, if the system refuses, or if standard error is already redirected.
     pub fn begin() -> Captured {
         Captured {
             #[cfg(target_os = "linux")]

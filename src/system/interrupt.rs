@@ -1,6 +1,6 @@
 //! Signals such as Ctrl-C (SIGINT, SIGTERM, SIGHUP). The first requests an orderly end. Another Ctrl-C ends the program
 //! at once, but never while files are being written. The exit code tells which signal it was. On Linux, a signal that
-//! was ignored at the start, such as SIGHUP under nohup, stays ignored. On Windows they are the console's events.
+//! was ignored at the start, such as SIGHUP under nohup, stays ignored. On Windows, these are console events.
 
 use crate::system::console;
 use crate::system::failure::{HUNG_UP, INTERRUPTED, TERMINATED};
@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 /// A second signal within this time is an echo of the first: `timeout` and shells signal a program and then its group.
 const ECHO: Duration = Duration::from_millis(500);
 
-/// Whether an end has been requested.
+/// Whether the program has been asked to end.
 pub struct Interrupt(Arc<Shared>);
 
 #[derive(Default)]
@@ -94,7 +94,7 @@ fn watch(_: impl Fn(u8) + Send + 'static) -> Result<()> {
 }
 
 /// The signals that the program ignores, as a bit mask with signal 1 lowest. Called before any is handled, it returns
-/// those ignored at the start. Empty where `/proc` does not tell.
+/// those ignored at the start. Empty without `/proc`.
 #[cfg(unix)]
 fn ignored_signals() -> u64 {
     ignored_in(&std::fs::read_to_string("/proc/self/status").unwrap_or_default())
@@ -125,7 +125,7 @@ impl Shared {
         let mut state = self.state();
         let first = *state.since.get_or_insert(now);
         let was_set = self.is_set.swap(true, Ordering::Relaxed);
-        // Ctrl-C comes first: the person at the keyboard wants the end, whatever else asks for it.
+        // Ctrl-C wins: the person at the keyboard wants the end, whatever else asks for it.
         state.exit_code = [INTERRUPTED, TERMINATED, HUNG_UP]
             .into_iter()
             .find(|code| *code == exit_code || Some(*code) == state.exit_code);
@@ -189,7 +189,7 @@ impl Interrupt {
         self.0.state().hurries()
     }
 
-    /// Exit code of a program that ends in good order after a signal.
+    /// Exit code of a program that ends cleanly after a signal.
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(self.0.exit_code())
     }

@@ -7,7 +7,7 @@
 use indicatif::DecimalBytes;
 use std::fs;
 
-/// Something needs more memory than there is.
+/// Something needs more memory than is available.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 #[error("{what} needs {} of memory, but {}{remedy}", words(*needed_bytes), room.text())]
 pub struct MemoryError {
@@ -107,14 +107,14 @@ pub fn zeroed<T: bytemuck::Zeroable>(
     bytemuck::allocation::try_zeroed_vec(count).map_err(|()| MemoryError {
         what: what(),
         needed_bytes: bytes,
-        // If what is known leaves room, something else is in the way.
+        // If the known limits leave room, an unknown one was reached.
         room: room().filter(|room| room.bytes < bytes).unwrap_or(Room { bytes: 0, limit: Limit::Unknown }),
         remedy,
     })
 }
 
-/// The least of what the machine, the process's control groups and its own limits allow. `None` if the system does not
-/// tell.
+/// The smallest of what the machine, the process's control groups and its own limits allow. `None` if the system does
+/// not report it.
 pub fn room() -> Option<Room> {
     let of_linux = fs::read_to_string("/proc/meminfo").ok().and_then(|text| in_bytes(&text, "MemAvailable:"));
     let [address_space, data] = left_by_limits();
@@ -152,7 +152,7 @@ fn of_other_systems() -> Option<u64> {
     Some(system.available_memory()).filter(|bytes| *bytes > 0)
 }
 
-/// A program for browsers has 4 GiB, and keeps what it has once had.
+/// In a browser, a program has 4 GiB and never gives memory back.
 #[cfg(target_family = "wasm")]
 fn of_other_systems() -> Option<u64> {
     Some((1 << 32) - 65_536 * core::arch::wasm32::memory_size::<0>() as u64)
@@ -195,7 +195,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn too_much_is_refused_with_the_numbers_and_a_remedy() {
+    fn refusals_have_numbers_and_a_remedy() {
         let of = |limit| move |bytes| Room { bytes, limit };
         let check =
             |bytes, free| check_against(|| "a film".to_owned(), bytes, of(Limit::Machine)(free), "do less");

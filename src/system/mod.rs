@@ -1,4 +1,4 @@
-//! What every room stands on: files written whole or not at all, the log, signals, the memory check, the console.
+//! The foundation of every room: files written whole or not at all, the log, signals, the memory check, the console.
 
 pub mod clock;
 pub mod console;

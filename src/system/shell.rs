@@ -1,4 +1,4 @@
-//! Words of a command as a shell takes them.
+//! Quotes the words of a command for a shell.
 
 use std::borrow::Cow;
 use std::ffi::OsStr;
@@ -30,7 +30,7 @@ impl Shell {
             // Fails only for NUL, which no argument can hold.
             Shell::Posix => shlex::try_quote(word).unwrap_or(Cow::Borrowed(word)),
             Shell::Windows => {
-                // A backslash before a quote would take its meaning.
+                // A backslash before a quote would escape it.
                 let end = &word[word.trim_end_matches('\\').len()..];
                 Cow::Owned(format!("\"{}{end}\"", word.replace('"', "\\\"")))
             }
@@ -47,20 +47,20 @@ impl Shell {
     }
 }
 
-/// A word that is not UTF-8, in the quotes of bash and zsh in which bytes have numbers.
+/// A word that is not UTF-8, in the quotes of bash and zsh that can hold any byte.
 #[cfg(unix)]
 fn with_bytes(word: &OsStr) -> String {
     use std::os::unix::ffi::OsStrExt;
     format!("$'{}'", word.as_bytes().escape_ascii())
 }
 
-/// No shell of Windows can name such a word.
+/// No Windows shell can express such a word.
 #[cfg(not(unix))]
 fn with_bytes(word: &OsStr) -> String {
     Shell::HERE.quoted(&word.to_string_lossy()).into_owned()
 }
 
-/// A path that no program takes for a flag: `./` comes before a leading dash.
+/// A path that no program mistakes for a flag: `./` precedes a leading dash.
 pub fn operand(path: &str) -> Cow<'_, str> {
     if path.starts_with('-') { Cow::Owned(format!("./{path}")) } else { Cow::Borrowed(path) }
 }
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn a_path_is_no_flag() {
+    fn paths_are_not_flags() {
         for (path, word) in [("-d", "./-d"), ("--", "./--"), ("a-b", "a-b"), ("./-d", "./-d"), ("", "")] {
             assert_eq!(operand(path), word);
         }

@@ -1,6 +1,6 @@
 //! Names that the user may have meant.
 
-/// Most names offered.
+/// Maximum number of suggestions.
 const OFFERED: usize = 4;
 
 /// Those of `names` that look like `wanted`, most similar first.
@@ -45,7 +45,7 @@ mod tests {
     }
 
     #[test]
-    fn few_names_are_offered_most_similar_first() {
+    fn most_similar_names_come_first() {
         let near = |wanted: &str, names: &[&'static str]| similar_names(wanted, names.iter().copied());
         // Three of six letters may be wrong.
         assert_eq!(near("abcdef", &["abwxyz", "abcxyz", "abcdxf"]), ["abcdxf", "abcxyz"]);

@@ -1,6 +1,6 @@
 //! Work shared among threads. A system may refuse to start a thread, for example in a full control group or at the
-//! limit on a user's processes; the threads that do start then do all the work. WebAssembly has none, so there the
-//! caller's does it.
+//! limit on a user's processes; the threads that do start then do all the work. WebAssembly has no threads, so there
+//! the caller's thread does it.
 
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -32,7 +32,7 @@ impl Pool {
 }
 
 /// Applies `work` to each item, on as many threads as the system starts, the caller's included. Returns the results in
-/// the order of the items. A panic is an error of its item alone.
+/// the order of the items. A panic fails only its own item.
 pub(crate) fn shared<T: Send, R: Send>(
     items: Vec<T>,
     work: impl Fn(T) -> R + Sync,
@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn results_come_in_the_order_of_the_items() {
+    fn results_are_in_the_order_of_the_items() {
         let doubled = shared((0..9).collect(), |item: u32| 2 * item);
         let doubled: Vec<u32> = doubled.into_iter().map(Result::unwrap).collect();
         assert_eq!(doubled, [0, 2, 4, 6, 8, 10, 12, 14, 16]);
@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn a_panic_is_an_error_of_its_item_alone() {
+    fn a_panic_fails_only_its_item() {
         let done = shared((0..5).collect(), |item: u32| {
             assert!(item != 2, "a slip");
             item

@@ -35,7 +35,7 @@ fn keyframes_are_written_and_read_back_to_the_bit() {
 fn wrong_keyframes_are_refused_with_their_place() {
     for (before, after, parts) in [
         ("frame = 2", "frame = 0", ["scene.toml:9:", "frame is 0, but the keyframe before it has 0"]),
-        ("frame = 2", "frame = 100000", ["scene.toml:10:", "100000 is not within"]),
+        ("frame = 2", "frame = 100000", ["scene.toml:10:", "100000 is not between"]),
         ("frame = 2\n", "", ["scene.toml:9:1", "missing key `frame`"]),
         ("look_at = [0.0, 0.5, 0.0]", "look_at = [4.0, 2.0, 0.0]", ["scene.toml:14:", "are both"]),
     ] {

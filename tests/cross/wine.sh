@@ -147,7 +147,7 @@ chmod a-w read-only.exr
 case_of 'a read-only file' 2 'marked read-only' --batch "${tiny[@]}" --out read-only.exr
 cp lf.exr held.exr
 windows "$work/helper.exe" hold held.exr "$work/weekender.exe" --batch "${tiny[@]}" --out held.exr
-[ $? = 2 ] && grep -q 'another program has opened it; close it there' "$work/out"
+[ $? = 2 ] && grep -q 'another program has it open; close it there' "$work/out"
 report 'a file that another program has opened' $?
 windows "$work/helper.exe" hold held.exr "$work/weekender.exe" info held.exr
 report 'it can be read' $?

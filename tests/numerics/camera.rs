@@ -77,7 +77,7 @@ fn case_32_fields_of_view() {
     for vfov_degrees in [0.0, 180.0, f64::NAN] {
         let refused = Camera { vfov_degrees, ..Camera::BOOK }.validate().unwrap_err().to_string();
         assert!(refused.contains("vfov_degrees"), "{refused}");
-        assert!(vfov_degrees.is_nan() || refused.contains("within 0.01 and 179 degrees"), "{refused}");
+        assert!(vfov_degrees.is_nan() || refused.contains("between 0.01 and 179 degrees"), "{refused}");
     }
     for vfov_degrees in [0.01, 179.0] {
         for look_at in [DVec3::NEG_Z, DVec3::new(1.0, 0.8, -1.0), DVec3::new(0.0, -3.0, -1.0)] {

@@ -59,7 +59,7 @@ fn case_11_thin_shell() {
 }
 
 /// The limit on the RMS applies to samples with the same path in both precisions. A path that rounding diverts (at a
-/// random choice in glass, or at an outline) is off by about .1 and counts as an outlier; one such sample in 1e4 makes
+/// random choice in glass, or at an outline) is off by about 0.1 and counts as an outlier; one such sample in 1e4 makes
 /// an RMS of 1e-3 however good the others are.
 #[test]
 fn case_12_single_against_double() {

@@ -71,7 +71,7 @@ fn independent_samples_are_independent() {
             }
             let ratio = squares_of_means / squares;
             println!("number {which}, {turns} turns: variance of the mean {ratio:.3} of the expected");
-            // The deviation is the root of 2 / PIXELS, .01.
+            // The deviation is the root of 2 / PIXELS, 0.01.
             assert!((ratio - 1.0).abs() < 0.05, "number {which}, {turns} turns: {ratio}");
         }
     }

@@ -127,7 +127,7 @@ fn a_film_that_was_saved_again_is_a_picture() {
         assert!(found.film.is_none() && (found.width, found.height) == (film.width(), film.height()));
         let refused = saved::open_film(&file(name)).unwrap_err();
         assert!(matches!(refused, OpenError::Film(CheckpointError::Resaved { .. })), "{refused}");
-        assert!(refused.to_string().contains("another program has saved it again"), "{refused}");
+        assert!(refused.to_string().contains("another program re-saved it"), "{refused}");
     }
 }
 

@@ -14,7 +14,7 @@ fn existing_parts_are_merged_and_missing_ones_named() {
     whole(at, "8..11", &[]);
     std::fs::rename(at.join("one-run.exr"), part_path(at, "p", 1)).unwrap();
     let (out, message) = ends(at, 1, &["merge", "p", "--out", "m.exr"]);
-    assert!(out.contains("19 of 32 samples per pixel (0..11, 24..32); 2 of 4 parts are whole"), "{out}");
+    assert!(out.contains("19 of 32 samples per pixel (0..11, 24..32); 2 of 4 parts are complete"), "{out}");
     for part in ["part-1.exr has 3 of 8 samples", "part-2.exr is missing", "--part 1", "--part 2"] {
         assert!(message.contains(part), "{part}: {message}");
     }
@@ -27,7 +27,7 @@ fn existing_parts_are_merged_and_missing_ones_named() {
     render_part(at, "p", 1);
     render_part(at, "p", 2);
     succeeds(at, &["merge", "p", "--out", "m.exr"]);
-    assert!(succeeds(at, &["merge", "p", "--check"]).ends_with("; 4 of 4 parts are whole\n"));
+    assert!(succeeds(at, &["merge", "p", "--check"]).ends_with("; 4 of 4 parts are complete\n"));
     assert!(film(&at.join("m.exr")) == whole(at, "0..32", &[]));
 }
 
@@ -74,7 +74,7 @@ fn misplaced_and_foreign_parts_are_named() {
     for words in [
         "part-1.exr holds the samples 0..2, but this part has 2..4",
         "part-2.exr is the film of another picture than p/plan.json: seed is 0 here, 9 there",
-        "2 of 4 parts are whole",
+        "2 of 4 parts are complete",
         "--array=1,2 ",
     ] {
         assert!(checked.contains(words), "{words}: {checked}");

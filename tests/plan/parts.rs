@@ -34,7 +34,7 @@ fn the_parts_of_a_plan_add_up_to_one_run_to_the_bit() {
             .collect();
         assert!(film(&at.join("merged.exr")) == whole(at, range, &kept), "{flags:?}");
         assert!(at.join("merged.png").exists());
-        assert!(succeeds(at, &["merge", &directory, "--check"]).contains("parts are whole"));
+        assert!(succeeds(at, &["merge", &directory, "--check"]).contains("parts are complete"));
     }
 }
 

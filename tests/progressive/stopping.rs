@@ -113,8 +113,8 @@ fn the_noise_target_ends_it() {
     assert_eq!(started(CPU, to_noise(1e9)).wait_until_over().samples_per_pixel, 16);
 }
 
-/// A render of up to 256 samples of this value that ends at an error of .01. If `is_late`, the samples of each pass come
-/// with the next one.
+/// A render of up to 256 samples of this value that ends at an error of 0.01. If `is_late`, the samples of each pass
+/// come with the next one.
 fn ended(value: fn(u64) -> u64, is_late: bool) -> (Status, Film) {
     let stop = Stop { noise: Some(0.01), ..Stop::at_samples(256) };
     let progressive = started_with(CPU, Plan::until(stop), move |_| {

@@ -28,7 +28,7 @@ const VFOV: &str = "vfov_degrees = 40";
 #[test]
 fn bad_spheres_materials_and_cameras_are_refused() {
     for (old, new, line, parts) in [
-        (RADIUS, "radius = 0", 8, &["spheres[0].radius is 0", "within 1e-18 and 1e18"][..]),
+        (RADIUS, "radius = 0", 8, &["spheres[0].radius is 0", "between 1e-18 and 1e18"][..]),
         (RADIUS, "radius = nan", 8, &["spheres[0].radius is NaN", "finite"]),
         (RADIUS, "radius = 1e300", 8, &["spheres[0].radius is 1e300, but", "1e18", "give the sphere"]),
         (RADIUS, "radious = 1", 10, &["unknown key `radious`", "`radius`"]),
@@ -45,7 +45,7 @@ fn bad_spheres_materials_and_cameras_are_refused() {
             ALBEDO,
             "albedo = [0.5, 1.5, 0.5]",
             5,
-            &["materials.ball.albedo is [0.5, 1.5, 0.5]", "within 0 and 1"],
+            &["materials.ball.albedo is [0.5, 1.5, 0.5]", "between 0 and 1"],
         ),
         (ALBEDO, "albedo = [0.5, 0.5]", 5, &["invalid length 2", "materials.ball"]),
         (ALBEDO, "", 5, &["missing key `albedo`", "materials.ball"]),
@@ -66,7 +66,7 @@ fn bad_spheres_materials_and_cameras_are_refused() {
             8,
             &["spheres[0].material.refraction_index is 0"],
         ),
-        (VFOV, "vfov_degrees = 180", 1, &["vfov_degrees is 180.0, but must be within 0.01 and 179"]),
+        (VFOV, "vfov_degrees = 180", 1, &["vfov_degrees is 180.0, but must be between 0.01 and 179"]),
         (VFOV, "", 1, &["missing key `vfov_degrees`"]),
         (VFOV, "vfov_degrees = 40\nvup = [0, 0, 1]", 1, &["vup is [0.0, 0.0, 1.0], which is parallel"]),
         (VFOV, "vfov_degrees = 40\nroll = 3", 5, &["unknown key `roll`"]),
@@ -84,11 +84,11 @@ fn bad_spheres_materials_and_cameras_are_refused() {
 #[test]
 fn bad_settings_are_refused() {
     for (table, key, line, part) in [
-        ("render", "width = 0", 6, "0 is not within 1 and 16384 in `render.width`"),
+        ("render", "width = 0", 6, "0 is not between 1 and 16384 in `render.width`"),
         ("render", "width = 40.5", 6, "expected a whole number in `render.width`"),
         ("render", "max_depth = 99999999999999999999", 6, "expected a whole number in `render.max_depth`"),
         ("render", "samples_per_pixel = 0", 6, "not within 1 and 4294967296 in `render.samples_per_pixel`"),
-        ("render", "seed = -1", 6, "-1 is not within 0 and 4294967295"),
+        ("render", "seed = -1", 6, "-1 is not between 0 and 4294967295"),
         ("render", "sampler = \"random\"", 6, "`sobol`"),
         ("render", "estimate_error = 1", 6, "expected a boolean"),
         ("rules", "gravity = true", 6, "unknown key `gravity`"),
@@ -96,7 +96,7 @@ fn bad_settings_are_refused() {
             "sky",
             "top = [0, 0, 101]",
             5,
-            "sky.top is [0.0, 0.0, 101.0], but each component must be within 0 and 100",
+            "sky.top is [0.0, 0.0, 101.0], but each component must be between 0 and 100",
         ),
         ("sky", "bottom = [nan, 0, 0]", 5, "sky.bottom.x is NaN"),
         ("lights", "", 5, "lights"),

@@ -130,7 +130,7 @@ expect plan/part-1.log " of them new) per pixel"
 [ "$(field "$merge_job" ExitCode)" = 1:0 ] || fail "the merge did not end with 1"
 expect plan/merge.log "part 2: part-2.exr has $(samples_of 2) of 2048 samples per pixel"
 expect plan/merge.log "part 3: part-3.exr has $(samples_of 3) of 2048 samples per pixel"
-expect plan/merge.log "6 of 8 parts are whole"
+expect plan/merge.log "6 of 8 parts are complete"
 said "task 1 went on from its checkpoint; the merge has the picture so far and names parts 2 and 3"
 
 if "$program" merge plan --check > check.log 2>&1; then fail "--check finds nothing missing"; fi
@@ -143,14 +143,14 @@ for part in 2 3; do
     expect "plan/part-$part.log" " of them new) per pixel"
 done
 "$program" merge plan --check > check.log 2>&1 || fail "parts are missing: $(cat check.log)"
-said "sbatch $numbers parts.sbatch: both went on from their checkpoints; all parts are whole"
+said "sbatch $numbers parts.sbatch: both continued from their checkpoints; all parts are complete"
 
 # A byte in the middle of the sums becomes another one.
 byte=$(od -An -tu1 -j250000 -N1 plan/part-6.exr)
 printf '%b' "\\0$(printf '%o' $((byte ^ 1)))" | dd of=plan/part-6.exr bs=1 seek=250000 conv=notrunc status=none
 if "$program" merge plan --check > check.log 2>&1; then fail "the damage is not found"; fi
 expect check.log "part 6: plan/part-6.exr is damaged"
-expect check.log "7 of 8 parts are whole"
+expect check.log "7 of 8 parts are complete"
 command=$(grep ' render-part ' check.log)
 case $command in
 "$program render-part plan/plan.json --part 6 "*) ;;

@@ -5,7 +5,7 @@ use crate::film::{Checksum, FilmError, SampleRanges};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// Rows of a band. Each band has a checksum of its own, so that damage can be located.
+/// Rows of a band. Each band has its own checksum, so that damage can be located.
 pub(super) const BAND_ROWS: u32 = 16;
 
 /// The description of a film's sums, as stored in its file.

@@ -4,7 +4,7 @@ use exr::meta::BlockDescription;
 use exr::meta::header::Header;
 use exr::prelude::Compression;
 
-/// Fewest bytes of a chunk: its offset table entry, row number and length.
+/// Minimum size of a chunk in bytes: its offset table entry, row number and length.
 const CHUNK_BYTES: u64 = 16;
 
 /// A chunk may always have this many bytes, whatever the file's length, because tiles may be larger than the picture.
@@ -18,7 +18,7 @@ pub(crate) fn check_length(header: &Header, length: u64) -> Result<(), String> {
     if header.channels.list.iter().any(|channel| channel.sampling.area() != 1) {
         return Err("some of its channels have fewer samples than pixels".to_owned());
     }
-    // Most bytes that one stored byte can decompress to.
+    // Maximum number of bytes that one stored byte can decompress to.
     let ratio = match header.compression {
         Compression::Uncompressed => 1,
         Compression::RLE => 64,

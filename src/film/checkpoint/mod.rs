@@ -61,7 +61,7 @@ pub struct FilmFile {
 pub enum CheckpointError {
     #[error(transparent)]
     Input(#[from] InputError),
-    #[error("{} is not an EXR file: it does not begin like one; films are the .exr files that Weekender saves", path.shown())]
+    #[error("{} is not an EXR file; films are the .exr files that Weekender saves", path.shown())]
     NotExr { path: PathBuf },
     #[error(
         "{} is a picture without a film's sums, so no samples can be added to it; only .exr files written by Weekender have them",
@@ -69,8 +69,8 @@ pub enum CheckpointError {
     )]
     NotFilm { path: PathBuf },
     #[error(
-        "{} is no film any more: another program has saved it again, and its sums are lost ({what}); add samples to the film \
-         as Weekender saved it, or compare this one as a picture",
+        "{} is no longer a Weekender film: another program re-saved it and lost its sums ({what}); add samples to the \
+         original film, or compare this one as a picture",
         path.shown()
     )]
     Resaved { path: PathBuf, what: String },
@@ -114,7 +114,7 @@ mod tests {
         film
     }
 
-    /// A film file that is valid but for what `change` does to its head.
+    /// A film file that is valid, except for what `change` does to its head.
     fn file(change: impl FnOnce(&mut Head)) -> Vec<u8> {
         let film = film();
         let mut head = Head::of(&film, TEXTS);
@@ -141,7 +141,10 @@ mod tests {
         };
         let resaved = |change: fn(&mut Head), part: &str| {
             let message = opened(&file(change)).unwrap_err().to_string();
-            assert!(message.contains("no film any more") && message.contains(part), "{part}: {message}");
+            assert!(
+                message.contains("no longer a Weekender film") && message.contains(part),
+                "{part}: {message}"
+            );
         };
         refused(|head| head.samples = vec![[0, 1 << 62]], "0..4611686018427387904");
         refused(|head| head.samples = vec![[0, 5], [1 << 32, (1 << 32) + 5]], "4294967296");

@@ -149,9 +149,8 @@ fn read_head_text(bytes: &[u8], header: &Header, path: &Path) -> Result<Head, Ch
     let head: Head = toml::from_str(text).map_err(unreadable)?;
     let (halves, checksums, bands) = (head.halves, head.bands.len(), band_count(head.height) as usize);
     if !(1..=2).contains(&halves) || checksums != bands {
-        let what = format!(
-            "it has {halves} halves and {checksums} checksums of bands, of which it should have {bands}"
-        );
+        let what =
+            format!("it has {halves} halves and {checksums} checksums of bands, but should have {bands}");
         return Err(damaged(path, what));
     }
     Ok(head)

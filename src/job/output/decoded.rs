@@ -7,8 +7,8 @@ use anyhow::{Result, ensure};
 /// The meaning of integer values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Encoding {
-    /// As Weekender and the book write them: the transfer, then `floor(256 v)`. Values of another largest one than 255 or
-    /// 65535 may also be rounded.
+    /// As Weekender and the book write them: the transfer, then `floor(256 v)`. With a maximum other than 255 or 65535,
+    /// values may also be rounded.
     Book(Transfer),
     /// As in the book, but with this exponent.
     Gamma(f64),
@@ -32,7 +32,7 @@ impl Damage {
 /// The error of a file that ends before its last pixel.
 #[derive(Clone, Debug)]
 pub struct Incomplete {
-    /// With the pixels that there are, fewer than its size says.
+    /// The pixels that it has, fewer than its size calls for.
     pub picture: Box<ReadPicture>,
     pub reason: String,
 }
@@ -127,11 +127,11 @@ pub(super) fn pixel_count(width: u32, height: u32) -> Result<usize> {
     Ok(count as usize)
 }
 
-/// Most memory per pixel while a picture is read: for the file's data, the decoded data, and the numbers with their
+/// Maximum memory per pixel while a picture is read: for the file's data, the decoded data, and the numbers with their
 /// quantisation steps.
 const BYTES_PER_PIXEL: u64 = 80;
 
-/// Returns an error if the picture would not fit into memory, with `more` bytes for each pixel than usual.
+/// Returns an error if the picture would not fit into memory, with `more` extra bytes per pixel.
 pub(super) fn check_memory(width: u32, height: u32, more: u64) -> Result<()> {
     let bytes = u64::from(width) * u64::from(height) * (BYTES_PER_PIXEL + more);
     let what = || format!("a picture of {width}x{height} pixels");
@@ -157,8 +157,8 @@ pub(super) fn note_on_primaries(found: [[f32; 2]; 4]) -> Option<String> {
 }
 
 impl Encoding {
-    /// The interval of linear values that are stored as `value` of up to `most`. At the top it is NaN, as all brighter
-    /// values are stored so.
+    /// The interval of linear values that are stored as `value` of up to `most`. NaN for the largest value, which also
+    /// stands for everything brighter.
     pub(super) fn interval(self, value: u16, most: u16, row: usize, height: usize) -> [f64; 2] {
         if value >= most { [f64::NAN; 2] } else { self.ends(value, most, row, height) }
     }
@@ -202,8 +202,8 @@ impl Encoding {
     }
 }
 
-/// The least and the largest displayed value that a program of the book stores as `value`: of 8 and 16 bits it cuts off,
-/// with another largest value it may also round.
+/// The range of displayed values that a program following the book stores as `value`. It truncates to 8 or 16 bits;
+/// with any other maximum it may also round.
 pub fn displayed(value: u16, most: u16) -> [f64; 2] {
     let levels = f64::from(most) + 1.0;
     let [low, high] = [f64::from(value) / levels, (f64::from(value) + 1.0) / levels];

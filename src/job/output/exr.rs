@@ -14,7 +14,7 @@ struct Layer<'a> {
     part: &'a Part<AnyChannels<FlatSamples>>,
     /// The part's name, if there are several, and what comes before the names of the channels; empty for the usual layer.
     name: String,
-    /// Red, green and blue; of grey, three times the same.
+    /// Red, green and blue; for grey, the same channel three times.
     channels: [&'a FlatSamples; 3],
     alpha: Option<&'a FlatSamples>,
 }
@@ -134,7 +134,7 @@ fn note_on_colours(image: &FlatImage) -> Option<String> {
     note_on_primaries([space.red, space.green, space.blue, space.white].map(|Vec2(x, y)| [x, y]))
 }
 
-/// Width and height, if there is memory for a picture and as many more bytes for each pixel.
+/// Width and height, if there is memory for the picture and `bytes` more per pixel.
 fn size(Vec2(width, height): Vec2<usize>, bytes: usize) -> Result<(u32, u32)> {
     let [width, height] = [width, height].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
     pixel_count(width, height)?;

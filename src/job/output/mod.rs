@@ -24,7 +24,7 @@ use std::path::Path;
 /// Longest recipe that is read from a PNG file, bytes: about two million listed spheres.
 const RECIPE_LIMIT: usize = 256 << 20;
 
-/// File format of a picture, named as files end.
+/// File format of a picture, named after its extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
 pub enum OutputFormat {
     /// 8-bit RGB.
@@ -126,8 +126,8 @@ pub fn read_description(path: &Path) -> Result<Description> {
     };
     found.with_context(|| {
         format!(
-            "{} does not say how it was made; only PNG and EXR files written by Weekender do, unless another program has \
-             saved them again",
+            "{} does not say how it was made; only PNG and EXR files written by Weekender do, unless another program \
+             re-saved them",
             path.shown()
         )
     })

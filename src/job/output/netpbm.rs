@@ -147,7 +147,7 @@ fn values_of(data: &[u8], bytes_per_value: usize) -> Vec<i64> {
     }
 }
 
-/// The body of a file as text, if it is nothing but numbers.
+/// The body of a file as text, if it contains only numbers.
 fn text_of(data: &[u8]) -> Option<&str> {
     let is_text =
         |byte: &u8| byte.is_ascii_digit() || byte.is_ascii_whitespace() || matches!(byte, b'.' | b',' | b'-');
@@ -155,7 +155,7 @@ fn text_of(data: &[u8]) -> Option<&str> {
     std::str::from_utf8(data).ok().filter(|_| is_all)
 }
 
-/// The picture of values that may be outside of their range.
+/// The picture of values that may be out of range.
 fn integers(
     [width, height]: [u32; 2],
     format: &'static str,
@@ -225,7 +225,7 @@ fn text(file: &[u8], format: &'static str, channels: usize, damages: &mut Vec<Da
     };
     let mut head = [width, height, most].map(|number| number.max(0) as u64);
     let words = || words().skip(3);
-    // A largest value that stands first, as the product of the sides shows.
+    // The largest value may come first, as the number of values shows.
     let numbers = words().count() as u64;
     if head[0] == 255 && numbers == head[1].saturating_mul(head[2]).saturating_mul(channels as u64) {
         damages.push(Damage::new("the largest value stands before width and height", HEADER));
@@ -398,7 +398,7 @@ fn floats(mut words: Words, channels: usize) -> Result<ReadPicture> {
     Ok(ReadPicture { width, height, format: "PFM", values, damages: Vec::new(), notes, stated: None })
 }
 
-/// Writes the mean as a PFM with the lowest byte first. It has no description, for which the format has no place.
+/// Writes the mean as a PFM with the lowest byte first. The format has no place for a description.
 pub(super) fn write_pfm(film: &Film, writer: &mut impl Write) -> io::Result<()> {
     write!(writer, "PF\n{} {}\n-1.0\n", film.width(), film.height())?;
     for row in film.means().chunks_exact(film.width() as usize).rev() {
@@ -460,7 +460,8 @@ impl<'a> Words<'a> {
         word.parse().map_err(|_| anyhow!("its {what} is {word:?}; {HEADER}"))
     }
 
-    /// What follows the white space that ends the header: one character, or all up to a line end if that leaves enough.
+    /// The data after the white space that ends the header: one character, or everything up to a line end if that
+    /// leaves enough.
     fn payload(&self, needed: usize) -> &'a [u8] {
         let mut rest = self.file.get(self.at..).unwrap_or_default();
         if rest.first() == Some(&b'#') {
@@ -473,7 +474,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Removes the carriage returns that text mode puts before each line feed, if there are as many as there are bytes too many.
+/// Removes the carriage returns that text mode puts before each line feed, if their number is that of the excess bytes.
 fn without_returns(data: &[u8], needed: usize) -> Option<Vec<u8>> {
     let feeds = data.iter().filter(|byte| **byte == b'\n').count();
     let pairs = data.windows(2).filter(|pair| pair == b"\r\n").count();
@@ -492,7 +493,7 @@ fn is_header(bytes: &[u8]) -> bool {
 
 /// Where the picture begins: at once, or at a line after some text.
 fn header(file: &[u8]) -> Option<usize> {
-    // At the start, white space may lack after the letters.
+    // At the start, the first number may follow the letters directly.
     if let [b'P', b'2' | b'3' | b'5' | b'6' | b'F' | b'f', ..] = file {
         return Some(0);
     }

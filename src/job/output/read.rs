@@ -126,7 +126,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_byte_stands_for_the_values_that_become_it(x in 0.0..1.2_f64) {
+        fn bytes_decode_to_the_values_they_encode(x in 0.0..1.2_f64) {
             for transfer in [Transfer::Linear, Transfer::Gamma2] {
                 let byte = to_byte(x, transfer, 0, 1);
                 let [low, high] = Encoding::Book(transfer).interval(byte.into(), 255, 0, 1);
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn an_exr_that_deflates_well_is_no_short_file() {
+    fn well_compressed_exr_is_not_too_short() {
         use ::exr::prelude::*;
         let (width, height) = (512, 512);
         let black = SpecificChannels::rgb(|_: Vec2<usize>| (0.0_f32, 0.0_f32, 0.0_f32));
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn sixteen_bits_have_as_many_levels() {
+    fn sixteen_bits_have_65536_levels() {
         let file = b"P6 1 1 65535 \xff\xff\x80\x00\x00\x00";
         let read = read(file).linear(Encoding::Book(Transfer::Linear));
         let [end, middle, zero] = read.pixels[0];
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pnm_has_as_many_levels_as_its_header_says() {
+    fn pnm_levels_follow_the_header() {
         let unknown = [f64::NAN; 2];
         let of_32 = [[0.0, 1.0 / 32.0], [15.5 / 31.0, 16.5 / 31.0], [30.0 / 32.0, 30.5 / 31.0], unknown];
         assert_intervals(b"P5 4 1 31 \x00\x10\x1e\x1f", &of_32, 31.0 / 32.0);

@@ -50,7 +50,7 @@ impl<'a> Commands<'a> {
         Commands { program, manifest: operand(path).into_owned(), flags: &manifest.flags }
     }
 
-    /// The command line that renders a part. `part` is its number, or what stands for it in a script.
+    /// The command line that renders a part. `part` is its number, or its placeholder in a script.
     pub fn part(&self, shell: Shell, part: &str) -> String {
         let before = shell.line([self.program, "render-part", &self.manifest, "--part"]);
         let flags = self.flags.iter().map(|flag| format!(" {}", shell.quoted(flag)));

@@ -24,7 +24,7 @@ pub struct Recipe {
     /// Spheres, materials and sky. All jobs of the recipe share it.
     pub scene: Arc<Scene>,
     pub camera: Camera,
-    /// The keyframes of an animation by rising frame number. Not part of the job, which is one picture.
+    /// The keyframes of an animation in ascending order of frames. Not part of the job, which is one picture.
     pub keyframes: Vec<Keyframe>,
     /// Size, depth, sampler, seed, halves.
     pub settings: RenderSettings,
@@ -61,8 +61,8 @@ impl Recipe {
         let number = number.with_context(|| {
             let (lowest, highest) = (FIELD_COUNT_LIMITS.start(), FIELD_COUNT_LIMITS.end());
             format!(
-                "field:{count} has {count:?} for its number of spheres, which must be within {lowest} and {highest}; try \
-                 field:10000"
+                "field:{count} has {count:?} for its number of spheres, which must be between {lowest} and {highest}; \
+                 try field:10000"
             )
         })?;
         let bytes = number * (size_of::<Sphere>() as u64 + TRACING_BYTES_PER_SPHERE);
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_scene_gives_similar_names() {
+    fn unknown_scene_suggests_similar_names() {
         let message = |name: &str| Recipe::find(name).expect_err("unknown").to_string();
         assert_eq!(
             message("three-sphere"),
@@ -141,7 +141,7 @@ mod tests {
         assert_eq!(message("xylophone"), "there is no scene \"xylophone\"; --list shows all");
         for count in ["0", "10000001", "-1", "many", ""] {
             let refused = message(&format!("field:{count}"));
-            assert!(refused.contains("must be within 1 and 10000000"), "{refused}");
+            assert!(refused.contains("must be between 1 and 10000000"), "{refused}");
         }
         assert_eq!(Recipe::builtin("xylophone"), None);
     }

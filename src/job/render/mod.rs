@@ -108,7 +108,7 @@ impl RenderJob {
     }
 
     /// Returns an error if preparing, tracing and writing the job with `films` films of its size needs more memory than
-    /// there is.
+    /// is available.
     ///
     /// # Errors
     /// [`MemoryError`], with a remedy.

@@ -33,7 +33,8 @@ pub struct RenderSettings {
     pub width: u32,
     /// Picture height in pixels, `1..=16384`.
     pub height: u32,
-    /// Most rays per path, including the camera ray, `1..=10000`. A path that is cut off contributes nothing.
+    /// Maximum number of rays per path, including the camera ray, `1..=10000`. A path that is cut off contributes
+    /// nothing.
     pub max_depth: u32,
     pub sampler: SamplerKind,
     /// Seed of the sampler: it changes only the noise.

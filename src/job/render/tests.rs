@@ -12,7 +12,7 @@ fn job(width: u32, height: u32, max_depth: u32) -> Result<RenderJob, JobError> {
 }
 
 #[test]
-fn a_picture_may_be_as_large_and_as_deep_as_the_limits() {
+fn pictures_may_reach_the_limits() {
     for (width, height, depth) in [(1, 1, 1), (SIZE_LIMIT, 1, 1), (1, SIZE_LIMIT, DEPTH_LIMIT)] {
         assert!(job(width, height, depth).is_ok(), "{width}x{height}, {depth}");
     }
@@ -35,7 +35,7 @@ fn a_picture_may_be_as_large_and_as_deep_as_the_limits() {
 }
 
 #[test]
-fn another_view_shares_the_scene_and_an_equal_copy_does_not() {
+fn views_share_a_scene_but_copies_do_not() {
     let job = job(4, 3, 2).unwrap();
     let camera = Camera { vfov_degrees: 30.0, ..Camera::BOOK };
     let seen = job.seen_by(camera, *job.settings()).unwrap();
@@ -62,7 +62,7 @@ fn memory_check_counts_films_file_and_spheres() {
     if memory::room().is_none() {
         return;
     }
-    // More than there ever is, in 24 bytes for each pixel of a half.
+    // More than any machine has, in 24 bytes for each pixel of a half.
     const FILMS: u64 = 1 << 20;
     let (width, height) = (SIZE_LIMIT, SIZE_LIMIT - 1);
     let pixels = u64::from(width) * u64::from(height);

@@ -32,7 +32,7 @@ pub fn difference(first: &RenderJob, other: &RenderJob) -> Option<String> {
     ))
 }
 
-/// All of a job but its scene, by the names of scene files.
+/// All values of a job except its scene, by their names in scene files.
 fn named_values(job: &RenderJob) -> Vec<(String, Value)> {
     let tables = [to_value(job.settings()), to_value(job.camera()), to_value(job.rules())];
     let tables = tables.into_iter().filter_map(|table| table.ok()?.as_object().cloned());

@@ -1,4 +1,4 @@
-//! Tells what would be lost if a film were replaced.
+//! Determines what would be lost if a film were replaced.
 
 use super::difference::same_job;
 use crate::film::{SampleRanges, checkpoint};
@@ -54,7 +54,7 @@ impl Replaced {
             _ => String::new(),
         };
         Some(format!(
-            "{path} is there already and {what}; {go_on}name another file for --checkpoint, or move this one away"
+            "{path} already exists and {what}; {go_on}name another file for --checkpoint, or move this one away"
         ))
     }
 

@@ -32,7 +32,7 @@ pub struct Denoising {
     pub samples_per_pixel: u64,
     pub threads: usize,
     pub seconds: Spread,
-    /// By what factor the squared error falls, as estimated.
+    /// Estimated factor by which the squared error falls.
     pub gain: f64,
 }
 
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_sums_up_its_runs() {
+    fn rows_sum_up_their_runs() {
         let run = Run { seconds: 2.0, paths: 8, rays: 20, busy_lanes: 3, offered_lanes: 4, rmse: Some(0.5) };
         let runs = vec![run, Run { seconds: 1.0, ..run }, Run { seconds: 4.0, ..run }];
         let packets = row(Kind::Packets, runs.clone());

@@ -23,7 +23,7 @@ pub struct Settings {
     pub seeds: u32,
     /// Tracing time for all seeds of a curve, seconds.
     pub time_limit: f64,
-    /// Most samples per pixel.
+    /// Maximum number of samples per pixel.
     pub max_samples: u64,
     /// Samples per pixel of the references.
     pub reference_samples: u64,

@@ -6,8 +6,8 @@ use crate::numbers::statistics::median;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Slopes and estimates are evaluated from this many samples on: smaller pictures finish before all threads are busy,
-/// and no stop condition uses their estimates.
+/// Slopes and estimates are evaluated only from this many samples on: smaller pictures finish before all threads are
+/// busy, and no stop condition uses their estimates.
 const FROM_SAMPLES: u64 = 16;
 
 /// An estimate is accurate if its ratio to the true error differs from 1 by at most this.
@@ -49,7 +49,7 @@ pub struct CurvePoint {
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurveSummary {
     pub curve: Curve,
-    /// By rising sample count.
+    /// In ascending order of samples.
     pub points: Vec<CurvePoint>,
     /// Exponent of time in the RMSE, and its standard error.
     pub slope: Option<[f64; 2]>,
@@ -155,7 +155,7 @@ impl Calibration {
     }
 }
 
-/// One entry per curve, but denoised ones, with error estimates and sample count from [`FROM_SAMPLES`] on.
+/// One entry per curve, except denoised ones, with error estimates and sample count from [`FROM_SAMPLES`] on.
 pub fn calibration(data: &Data) -> Vec<Calibration> {
     let mut pairs: BTreeMap<(&Curve, u64), Vec<[f64; 2]>> = BTreeMap::new();
     for run in data.runs.iter().filter(|run| !run.curve.is_denoised()) {

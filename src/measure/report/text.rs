@@ -35,12 +35,12 @@ pub fn markdown(findings: &Findings<'_>, command: &str) -> String {
 
 const HOW_TO_READ: &str = "\
 **How to read it.** *RMSE* is the root mean square difference from the reference over pixels and channels, in linear
-radiance, where white is 1. At .05 a picture is grainy, at .01 nearly clean, and at .001 no screen shows the difference.
-*relMSE* gives more weight to errors in dark areas. The *slope* is the exponent of the seconds in the RMSE: -.5 means that
-halving the error takes four times as long. *Efficiency* is 1/(RMSE^2 seconds): twice the efficiency gives the same
-picture in half the time. Efficiency and relMSE are of the last point. Times with ~ are extrapolated. Seconds are medians
-over the pictures and include adding to the film; errors are means. `report.json` has every picture at every number of
-samples.
+radiance, where white is 1. At 0.05 a picture is grainy, at 0.01 nearly clean, and at 0.001 no screen shows the
+difference. *relMSE* gives more weight to errors in dark areas. The *slope* is the exponent of the seconds in the RMSE:
+-0.5 means that halving the error takes four times as long. *Efficiency* is 1/(RMSE^2 seconds): twice the efficiency
+gives the same picture in half the time. Efficiency and relMSE are of the last point. Times with ~ are extrapolated.
+Seconds are medians over the pictures and include adding to the film; errors are means. `report.json` has every picture
+at every number of samples.
 ";
 
 /// One row per curve of a scene.

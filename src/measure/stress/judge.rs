@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pair_is_worked_out_by_hand() {
+    fn pair_matches_hand_calculation() {
         let exact = row(2, [&[[1.0; 3]; 4], &[[1.0; 3]; 4]]);
         let pixels = [[2.0; 3], [3.0; 3], [4.0; 3], [7.0; 3]];
         let film = row(2, [&pixels, &pixels]);
@@ -233,7 +233,7 @@ mod tests {
 
     /// Slightly within each limit and slightly beyond it.
     #[test]
-    fn limits_lie_where_they_should() {
+    fn limits_are_where_they_should_be() {
         let level = |deviation, noise| Level { mean: [1.0; 3], deviation, noise };
         let (quiet, noisy) = (level(0.0, 0.0), level(1e-3, 0.1));
         let every = |value| Difference::from_every(&quiet, [value; 3]);

@@ -1,7 +1,7 @@
 //! `weekender stress`: renders extreme scenes on every backend and checks the results.
 //!
 //! Each case derives its expected result in a sentence: a closed form (a white world is 1, a closed room 0, a convex
-//! ball of albedo .5 under a sky of 1 is .5), another scene that must give the same samples, or the `f64` reference
+//! ball of albedo 0.5 under a sky of 1 is 0.5), another scene that must give the same samples, or the `f64` reference
 //! where `f64` has digits to spare. The window shows the cases worth looking at.
 
 mod case;

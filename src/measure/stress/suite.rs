@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-/// Time limit of one picture, and how often it is looked at.
+/// Time limit of one picture, and the interval at which it is checked.
 const TIME_LIMIT: Duration = Duration::from_secs(20);
 const GLANCE: Duration = Duration::from_millis(20);
 
@@ -297,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_ends_at_its_limit_or_when_the_user_interrupts() {
+    fn pictures_end_at_the_limit_or_an_interrupt() {
         for (is_interrupted, limit) in [(false, Duration::ZERO), (true, TIME_LIMIT)] {
             let was_set = within_time(&AtomicBool::new(is_interrupted), limit, |cancel| {
                 let begin = Instant::now();

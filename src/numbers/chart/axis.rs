@@ -8,7 +8,7 @@ use std::ops::Range;
 pub struct Axis {
     /// Quantity and unit.
     pub label: String,
-    /// Smallest and largest value. Without a range between them, as in a chart without points, the axis has any.
+    /// Smallest and largest value. If they span no range, as in a chart without points, the axis gets an arbitrary one.
     pub limits: [f64; 2],
 }
 

@@ -33,7 +33,7 @@ pub fn draw(area: &Area, chart: &LineChart) -> Drawn {
     for series in &chart.series {
         let at = |point: &Point| Some((position(point.x)?, position(point.y)?));
         let points: Vec<(f64, f64)> = series.points.iter().filter_map(at).collect();
-        // A law has its name at its beginning.
+        // The name of a law is at its start.
         let end = if series.look == Look::Guide { points.first() } else { points.last() };
         let end = end.filter(|_| !series.name.is_empty());
         let end = end.map(|end| context.plotting_area().map_coordinate(end));

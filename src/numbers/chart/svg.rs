@@ -37,9 +37,9 @@ fn draw(area: &Area, figure: &Figure) -> Drawn {
 /// Height of the space above the charts of an untitled figure, points.
 pub const UNTITLED_TOP: u32 = 40;
 
-/// The figure as an `<svg>` element that fills its place, in the page's colours: `currentColor` for text, the variables
-/// `--muted` and `--line` for axes and grid, and `--series-1` to `--series-6` for measurements. `label` describes it to
-/// screen readers.
+/// The figure as an `<svg>` element that fills its container, in the page's colours: `currentColor` for text, the
+/// variables `--muted` and `--line` for axes and grid, and `--series-1` to `--series-6` for measurements. `label`
+/// describes it to screen readers.
 ///
 /// # Errors
 /// As for [`svg`].

@@ -87,7 +87,7 @@ const SLOPES: [f64; 2] = [-0.5, -0.75];
 /// Uncertainty of the slope before there are any points.
 const PRIOR_SLOPE_DEVIATION: f64 = 0.08;
 
-/// Least uncertainty of an estimate's logarithm: that of two halves over some thousand pixels.
+/// Minimum uncertainty of an estimate's logarithm: that of two halves over a few thousand pixels.
 const LEAST_SCATTER: f64 = 0.02;
 
 /// Predicts when the error, `now` at the time `now.time`, falls to the target. `history` holds earlier estimates,

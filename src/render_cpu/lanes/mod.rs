@@ -4,7 +4,7 @@
 //! numbers. Every function is `#[inline(always)]`: a function that is not inlined would be compiled without the level's
 //! instructions.
 
-/// Declares methods that are always inlined, a line each.
+/// Declares methods that are always inlined, one per line.
 macro_rules! inlined {
     ($($(#[$meta:meta])* $visible:vis fn $name:ident $arguments:tt $(-> $output:ty)? $body:block)*) => {
         $($(#[$meta])* #[inline(always)] $visible fn $name $arguments $(-> $output)? $body)*

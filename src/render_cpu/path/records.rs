@@ -61,12 +61,12 @@ impl<L: Lanes> ShadingRecords<L> {
     }
 }
 
-/// Whether the records are so few that a column fits a register. An instruction then loads a field of all lanes, and to
-/// load it again costs less than to keep it.
+/// Whether the records are so few that a column fits a register. An instruction then loads a field of all lanes, and
+/// reloading it costs less than keeping it.
 #[inline(always)]
 pub(super) fn is_permuted<L: Lanes, const PARTS: u32>(context: Context<L, PARTS>) -> bool {
-    // With one lane there are no such columns. The general kernel asks all the same: compiled without the question, it
-    // takes 1.07 times as long on the book.
+    // With one lane there are no such columns. The general kernel asks anyway: compiled without the question, it takes
+    // 1.07 times as long on the book.
     !is_small::<L, PARTS>() && context.broadcast.prepared.records.len() <= L::PERMUTED_ROWS
 }
 

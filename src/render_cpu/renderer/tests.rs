@@ -97,7 +97,7 @@ fn stopped_pass_is_whole_or_withdrawn() {
         });
         let is_withdrawn = outcome == Outcome::Withdrawn;
         assert!(film == if is_withdrawn { held.clone() } else { whole.clone() }, "{eighths} eighths");
-        assert!(eighths > 0 || is_withdrawn, "it was to be given up");
+        assert!(eighths > 0 || is_withdrawn, "it should be given up");
     }
 }
 

@@ -94,6 +94,6 @@ pub fn touching_spheres() -> Scene {
 /// The three spheres from above and from the left. (Section 12.2.)
 pub const SIDE_VIEW: Camera = Camera { look_from: DVec3::new(-2.0, 2.0, 1.0), ..Camera::BOOK };
 
-/// The same from close by, through a wide lens. (Section 13.2.)
+/// The same scene up close, through a wide lens. (Section 13.2.)
 pub const WIDE_LENS: Camera =
     Camera { vfov_degrees: 20.0, defocus_angle_degrees: 10.0, focus_distance: Some(3.4), ..SIDE_VIEW };

@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn of_many_at_once_one_has_it() {
+    fn only_one_of_many_gets_the_lock() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("g.exr");
         let (inside, turns) = (std::sync::atomic::AtomicU32::new(0), std::sync::atomic::Ordering::SeqCst);

@@ -36,7 +36,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_an_own_page_is_replaced() {
+    fn only_own_pages_are_replaced() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("index.html");
         check_page(&path).unwrap();

@@ -42,7 +42,7 @@ pub fn identity(path: &Path) -> Option<PathBuf> {
 pub(super) fn resolved(path: &Path) -> io::Result<PathBuf> {
     match fs::canonicalize(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => {}
-        // Some drivers of Windows disks cannot tell the whole name of a file.
+        // Some Windows disk drivers cannot report the full name of a file.
         Err(_) if cfg!(windows) => return std::path::absolute(path),
         known => return known,
     }
@@ -64,8 +64,7 @@ pub fn make_directory(directory: &Path) -> Result<()> {
     created.with_context(context)
 }
 
-/// For state and for what can be recreated: the variable that names the system's directory, and where in the home
-/// directory that is unless the variable says otherwise.
+/// For state and for caches: the variable that names the directory, and its default place in the home directory.
 const USUAL: [(&str, &str); 2] = if cfg!(windows) {
     [("LOCALAPPDATA", "AppData/Local"), ("LOCALAPPDATA", "AppData/Local")]
 } else if cfg!(target_vendor = "apple") {
@@ -84,7 +83,7 @@ pub fn state_directory() -> Option<PathBuf> {
 pub fn cache_directory() -> Option<PathBuf> {
     let [_, (variable, usual)] = USUAL;
     let own = own_directory(env::var_os(variable), home_directory(), usual)?;
-    // There, it is the directory for state, too.
+    // Windows has one directory for state and caches.
     Some(if cfg!(windows) { own.join("cache") } else { own })
 }
 
@@ -105,7 +104,7 @@ pub fn pictures_directory() -> Option<PathBuf> {
 
 /// The directory for files that last no longer than the program.
 pub fn temporary_directory() -> PathBuf {
-    // The standard library knows of none there, and panics.
+    // In WebAssembly, `temp_dir` panics.
     if cfg!(target_family = "wasm") { PathBuf::from("/") } else { env::temp_dir() }
 }
 
@@ -133,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn a_variable_chooses_the_directory_only_if_it_is_absolute() {
+    fn only_an_absolute_variable_chooses_the_directory() {
         let here = env::current_dir().unwrap();
         let [state, home] = ["state", "home"].map(|name| here.join(name));
         let found = |named: Option<&OsStr>, home: Option<&PathBuf>| {

@@ -25,14 +25,14 @@ impl InputError {
             ));
         }
         let path = path.shown();
-        InputError(format!("cannot read {path}: {reason}; check its name and whether you may read it"))
+        InputError(format!("cannot read {path}: {reason}; check its name and its permissions"))
     }
 }
 
-/// Opens a file and returns it with its length in bytes. Of a pipe and of standard input (`-`), it opens a copy.
+/// Opens a file and returns it with its length in bytes. For a pipe or standard input (`-`), opens a copy.
 ///
 /// # Errors
-/// [`InputError`]. Other kinds than files and pipes are not opened: some never end, and some block forever.
+/// [`InputError`]. Anything but files and pipes is refused: some devices never end, and some block forever.
 pub fn open(path: &Path) -> Result<(File, u64), InputError> {
     let unreadable = |reason: io::Error| InputError::unreadable(path, reason);
     let file = if path == Path::new(STANDARD) {
@@ -78,12 +78,12 @@ fn copy_of(path: &Path) -> io::Result<File> {
         io::copy(&mut io::stdin().take(PIPE_LIMIT), &mut copy)?
     };
     if length == PIPE_LIMIT {
-        return Err(io::Error::other(format!("more than {} come through it", words(PIPE_LIMIT))));
+        return Err(io::Error::other(format!("it delivers more than {}", words(PIPE_LIMIT))));
     }
     Ok(copy)
 }
 
-/// Reads from a place in a file. Where files have only one position, this moves it.
+/// Reads at a position in a file. On systems without such reads, this moves the file's own position.
 pub(crate) fn read_at(file: &File, bytes: &mut [u8], place: u64) -> io::Result<usize> {
     #[cfg(unix)]
     return std::os::unix::fs::FileExt::read_at(file, bytes, place);
@@ -106,7 +106,7 @@ pub fn read(path: &Path, what: &'static str, limit: u64) -> Result<Vec<u8>, Inpu
     let too_long = |bytes| {
         let (path, bytes, limit) = (path.shown(), words(bytes), words(limit));
         InputError(format!(
-            "{path} has {bytes}, but {what} of more than {limit} is not read; check that it is the right file"
+            "{path} has {bytes}, but {what} may have at most {limit}; check that it is the right file"
         ))
     };
     if length > limit {
@@ -133,7 +133,7 @@ mod tests {
         fs::write(&path, [7; 10]).unwrap();
         assert_eq!(read(&path, "a list", 10).unwrap(), [7; 10]);
         let message = read(&path, "a list", 9).unwrap_err().to_string();
-        assert!(message.contains("has 10 B, but a list of more than 9 B is not read"), "{message}");
+        assert!(message.contains("has 10 B, but a list may have at most 9 B"), "{message}");
         assert!(read(&directory.path().join("x"), "a list", 1).is_err());
     }
 
@@ -160,6 +160,6 @@ mod tests {
         let whole = fs::read(path).unwrap();
         let length = whole.len() as u64;
         assert_eq!(read(path, "a list", length).unwrap(), whole);
-        assert!(read(path, "a list", length - 1).unwrap_err().to_string().contains("is not read"));
+        assert!(read(path, "a list", length - 1).unwrap_err().to_string().contains("may have at most"));
     }
 }

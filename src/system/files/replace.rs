@@ -146,11 +146,11 @@ impl Target {
     }
 }
 
-/// Why Windows would write to something else than a file of this name. A canonical path gets around its checks.
+/// Why Windows would not write to a file of this name. A canonical path bypasses its checks.
 fn refusal_of_windows(path: &Path) -> Option<&'static str> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     if is_device(path) {
-        Some("Windows keeps this name for a device")
+        Some("Windows reserves this name for a device")
     } else if name.contains(['<', '>', ':', '"', '|', '?', '*']) {
         Some("Windows allows none of < > : \" | ? * in a name")
     } else if name.ends_with(['.', ' ']) {
@@ -188,12 +188,12 @@ pub(super) fn patiently<T>(patience: Duration, mut attempt: impl FnMut() -> io::
 /// Waits for another program to close the file that is to be replaced.
 fn once_closed(attempt: impl FnMut() -> io::Result<()>) -> io::Result<()> {
     patiently(PATIENCE, attempt).map_err(|error| match is_busy(&error) {
-        true => io::Error::new(ErrorKind::ResourceBusy, "another program has opened it"),
+        true => io::Error::new(ErrorKind::ResourceBusy, "another program has it open"),
         false => error,
     })
 }
 
-/// On Windows, what another program has opened can be replaced only if that program allows it.
+/// On Windows, a file that another program has open can be replaced only if that program allows it.
 #[cfg(windows)]
 fn can_be_replaced(path: &Path) -> io::Result<()> {
     use std::os::windows::fs::OpenOptionsExt;
@@ -232,7 +232,7 @@ fn try_write(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Resul
     };
     match Target::find(path)? {
         Target::StandardOutput => {
-            // Some formats are not written from start to end.
+            // Some formats are not written sequentially.
             let mut file = unnamed()?;
             fill(&file)?;
             file.rewind()?;
@@ -263,7 +263,7 @@ mod tests {
     use std::os::windows::fs::OpenOptionsExt;
 
     #[test]
-    fn a_file_that_another_program_has_opened_is_not_replaced() {
+    fn files_open_elsewhere_are_not_replaced() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("film.exr");
         fs::write(&path, "old").unwrap();
@@ -271,7 +271,7 @@ mod tests {
         let held = OpenOptions::new().read(true).share_mode(read_only).open(&path).unwrap();
         for refused in [check_writable(&path), write_text(&path, "new")] {
             let message = refused.unwrap_err().to_string();
-            assert!(message.contains("another program has opened it; close it there"), "{message}");
+            assert!(message.contains("another program has it open; close it there"), "{message}");
         }
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
         let waiting = std::thread::spawn(move || write_text(&path, "new").is_ok());
@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn what_windows_takes_for_something_else_is_refused() {
+    fn names_that_windows_would_change_are_refused() {
         let refused = |name: &str| refusal_of_windows(Path::new(name)).is_some();
         for name in ["a.exr:b.exr", "a?.exr", "C:\\films\\a.exr.", "a.exr "] {
             assert!(refused(name), "{name}");
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_of_a_device_is_refused() {
+    fn device_names_are_refused() {
         for name in ["NUL", "con", "C:\\a folder\\com1"] {
             assert!(is_device(Path::new(name)), "{name}");
         }

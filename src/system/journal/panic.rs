@@ -20,8 +20,8 @@ static VERSION: OnceLock<String> = OnceLock::new();
 /// Whether a panic on the main thread would be another program's fault, and is reported by whoever catches it.
 static IS_EXPECTED: AtomicBool = AtomicBool::new(false);
 
-/// Sets whether a panic on the main thread is only logged, because it is caught and reported in other words. Returns the
-/// value before.
+/// Sets whether a panic on the main thread is only logged, because it is caught and reported in other words. Returns
+/// the previous value.
 pub fn expect_panics(is_expected: bool) -> bool {
     IS_EXPECTED.swap(is_expected, Ordering::SeqCst)
 }
@@ -50,7 +50,7 @@ pub fn write_report() {
     let mut paths = places.iter().flatten().map(|place| place.join(&name));
     match paths.find(|path| write_text(path, &text).is_ok()) {
         Some(path) => console::note(&format!(
-            "a report is in {}: read it, then send it with the scene file if there was one",
+            "a report was written to {}: read it, then send it, with the scene file if you used one",
             path.display()
         )),
         None => console::note(&format!("no report could be written to any of {places:?}")),

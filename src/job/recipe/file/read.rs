@@ -21,8 +21,8 @@ use toml::Spanned;
 /// Longest scene file, bytes: about ten million spheres.
 const FILE_LIMIT: u64 = 1 << 30;
 
-/// Most bytes of memory per value, key or line of a scene file while it is read. Measured with listed spheres, which need
-/// the most, and with the shortest values.
+/// Maximum bytes of memory per value, key or line of a scene file while it is read. Measured with listed spheres, which
+/// need the most, and with the shortest values.
 const VALUE_BYTES: u64 = 260;
 
 /// An error at this byte of the text, with line and column in characters from 1.
@@ -135,7 +135,7 @@ impl<const LOWEST: i64, const HIGHEST: i64> TryFrom<i64> for Whole<LOWEST, HIGHE
 
     fn try_from(number: i64) -> Result<Self, String> {
         let is_within = (LOWEST..=HIGHEST).contains(&number);
-        is_within.then_some(Whole(number)).ok_or(format!("{number} is not within {LOWEST} and {HIGHEST}"))
+        is_within.then_some(Whole(number)).ok_or(format!("{number} is not between {LOWEST} and {HIGHEST}"))
     }
 }
 
@@ -183,7 +183,7 @@ struct RawSettings {
     estimate_error: Option<bool>,
 }
 
-/// Where in the text something is wrong, and what.
+/// Where the text is wrong, and why.
 type Refusal = (Range<usize>, String);
 
 fn refuse(place: Range<usize>, reason: impl Display) -> Refusal {
@@ -232,7 +232,7 @@ fn builtin_scene(name: &Spanned<String>, mark: Option<&Spanned<String>>) -> Resu
         Some(mark) if *mark.get_ref() != named::mark(&scene) => {
             let reason = format!(
                 "the built-in scene {:?} has changed since this file was made; use the version that made it, or remove \
-                 scene_mark to take the present scene",
+                 scene_mark to use the current scene",
                 name.get_ref()
             );
             Err(refuse(mark.span(), reason))
@@ -313,7 +313,7 @@ fn material_of(
     }
 }
 
-/// The camera. `base` has the values of missing keys; without it, some must be there.
+/// The camera. `base` has the values of missing keys; without it, some keys are required.
 fn camera_of(raw: &Spanned<RawCamera>, base: Option<&Camera>) -> Result<Camera, Refusal> {
     let (place, raw) = (raw.span(), raw.get_ref());
     let missing = match raw {
@@ -350,7 +350,7 @@ fn keyframes_of(raw: Vec<Spanned<RawCamera>>, camera: &Camera) -> Result<Vec<Key
         let frame = frame as u32;
         if let Some(before) = keyframes.last().filter(|before| before.frame >= frame) {
             let reason = format!(
-                "frame is {frame}, but the keyframe before it has {}; list keyframes by rising frame number, each number \
+                "frame is {frame}, but the keyframe before it has {}; list keyframes in ascending order, each frame \
                  once",
                 before.frame
             );

@@ -77,7 +77,7 @@ pub fn eye_near_a_surface(family: &'static Family) -> Vec<Case> {
             let away = picture([(center, radius, material)], eye(look_from, look_from + up, 90.0));
             let place = if height == 0.0 { "on".to_owned() } else { format!("{height:e} above") };
             let stiff = format!("the eye {place} {phrase}, looking away from it");
-            let why = "nothing but a sky of 1 is in view";
+            let why = "only a sky of 1 is in view";
             cases.push(Case::new(family, format!("{surface}-{name}-away"), stiff, away).every(1.0, why));
             if height > 0.0 && surface != "glass" {
                 let down = picture([(center, radius, material)], eye(look_from, center, 90.0));

@@ -7,7 +7,7 @@ use crate::scene::{Camera, Material, Scene, Sky};
 use glam::DVec3;
 use std::sync::Arc;
 
-const WHY: &str = "a convex ball of albedo .5 under a sky of 1: one bounce, whatever the copies";
+const WHY: &str = "a convex ball of albedo 0.5 under a sky of 1: one bounce, whatever the copies";
 
 /// Identical balls, up to a hundred thousand.
 pub fn copies(family: &'static Family) -> Vec<Case> {
@@ -70,7 +70,7 @@ pub fn shifts(family: &'static Family) -> Vec<Case> {
             let shift = 10.0_f64.powi(-exponent);
             let balls = [(DVec3::ZERO, 1.0, matte(0.5)), (shift * direction, 1.0, matte(0.5))];
             let stiff = format!("two balls {shift:e} apart along {axis}: too close for any threshold");
-            let why = "the two balls are convex but for a crease as shallow as the shift";
+            let why = "the two balls are convex, except for a crease as shallow as the shift";
             let case = Case::new(family, format!("1e-{exponent}-{axis}"), stiff, picture(balls, in_front()));
             cases.push(case.expect(Expected::Mean(0.5), why, 1e-6 + shift));
         }
@@ -99,7 +99,7 @@ pub fn odd_ones(family: &'static Family) -> Vec<Case> {
     let field = named(sized(field, [48, 32], 16), "field:4000");
     type Change = (&'static str, &'static str, fn(&mut Scene, &mut Camera));
     let changes: [Change; 5] = [
-        ("tiny", "one ball of radius 1e-4 among 4,000 of about .3", |scene, camera| {
+        ("tiny", "one ball of radius 1e-4 among 4,000 of about 0.3", |scene, camera| {
             scene.add_sphere(camera.look_at + 2.0 * DVec3::Y, 1e-4, 0);
         }),
         ("focus", "a focus 1e-4 in front of the eye", |_, camera| camera.focus_distance = Some(1e-4)),

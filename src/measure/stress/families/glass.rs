@@ -44,8 +44,8 @@ pub fn trapped(family: &'static Family) -> Vec<Case> {
     for (depth, size, samples) in [(1000, [12, 8], 16), (10_000, [8, 6], 4)] {
         let along = sized(deep(within(DVec3::new(0.9, 0.0, -1.0), 50.0), depth), size, samples);
         let stiff = format!("the eye in glass, looking along its wall, up to {} per path", rays(depth));
-        let why = "at .9 of the radius and at most 40 degrees off the tangent, the sine of the angle of incidence is above \
-                   .68; the critical sine is 1/1.5, so nothing gets out";
+        let why = "at 0.9 of the radius and at most 40 degrees off the tangent, the sine of the angle of incidence is \
+                   above 0.68; the critical sine is 1/1.5, so nothing gets out";
         cases.push(Case::new(family, format!("along-{depth}"), stiff, along).every(0.0, why));
         let across = sized(deep(within(DVec3::new(0.4, 0.0, -1.0), 80.0), depth), size, samples);
         let stiff = format!("the same with the critical angle in view, up to {} per path", rays(depth));
@@ -100,7 +100,7 @@ pub fn shells(family: &'static Family) -> Vec<Case> {
     for count in [1, 50, 105, 108, 1000, 10_000] {
         let recipe = sized(picture(nested(count), in_front()), [24, 16], if count > 1000 { 4 } else { 32 });
         let stiff = format!("{}: no box lies beside another", counted(count, "concentric shell"));
-        let why = "only the outermost shell is seen, a convex ball of albedo .5 under a sky of 1";
+        let why = "only the outermost shell is seen, a convex ball of albedo 0.5 under a sky of 1";
         cases.push(Case::new(family, count, stiff, recipe).every(0.5, why));
     }
     for pairs in [1, 5, 50] {
@@ -113,7 +113,7 @@ pub fn shells(family: &'static Family) -> Vec<Case> {
         let size = if pairs < 50 { [24, 16] } else { [12, 8] };
         let recipe = sized(deep(of_scene(scene(balls, WHITE_SKY), in_front()), 10_000), size, 16);
         let bubbles = if pairs == 1 { "one bubble".to_owned() } else { format!("{pairs} nested bubbles") };
-        let stiff = format!("{bubbles} of glass: long paths of nothing but reflections");
+        let stiff = format!("{bubbles} of glass: long paths of reflections alone");
         let why = "glass absorbs nothing, and within 10,000 rays practically every path reaches a sky of 1";
         let case = Case::new(family, format!("glass-{pairs}"), stiff, recipe);
         cases.push(case.expect(Expected::Mean(1.0), why, 1e-6));

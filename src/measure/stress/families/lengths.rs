@@ -47,12 +47,12 @@ pub fn scaled_scenes(family: &'static Family) -> Vec<Case> {
             match exponent {
                 -3 => case.watched(
                     "Balls of half a millimetre",
-                    "Three balls of half a millimetre. The book's threshold of .001 is twice their radius, so \
+                    "Three balls of half a millimetre. The book's threshold of 0.001 is twice their radius, so \
                      they cast no shadows and the glass is empty.",
                 ),
                 6 => case.watched(
                     "Balls of five hundred kilometres",
-                    "The same scene, a billion times as large. Here .001 is less than a rounding error, and with the \
+                    "The same scene, a billion times as large. Here 0.001 is less than a rounding error, and with the \
                      book's arithmetic, rays hit the surface that they leave.",
                 ),
                 _ => case,
@@ -65,7 +65,7 @@ pub fn scaled_scenes(family: &'static Family) -> Vec<Case> {
 pub fn lenses(family: &'static Family) -> Vec<Case> {
     type Change = (&'static str, &'static str, fn(&mut Camera));
     let changes: [Change; 6] = [
-        ("narrowest", "a field of view of .01 degrees", |camera| camera.vfov_degrees = 0.01),
+        ("narrowest", "a field of view of 0.01 degrees", |camera| camera.vfov_degrees = 0.01),
         ("widest", "a field of view of 179 degrees", |camera| camera.vfov_degrees = 179.0),
         ("wide-lens", "a lens of 178 degrees: most rays are almost parallel to its plane", |camera| {
             camera.defocus_angle_degrees = 178.0;

@@ -93,7 +93,7 @@ fn known_variance_has_infinite_freedom() {
 }
 
 #[test]
-fn rare_path_in_both_halves_is_no_difference() {
+fn rare_path_in_both_halves_is_ignored() {
     let none = vec![[0.0; 3]; 64];
     let mut values = none.clone();
     values[9] = [-1.0 / 32.0; 3];
