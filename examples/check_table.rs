@@ -2,8 +2,8 @@
 //! with Weekender, at 240x135 and 80 samples in 8 bits, and `weekender check` is asked what is wrong, with `--stage` and
 //! without.
 //!
-//! `cargo run --release --example check_table [MISTAKE...]`; the mistake `right` stands for correct pictures. Mistakes that
-//! Weekender does not know are planted, too: of those, a guess is right, and so is no answer.
+//! `cargo run --release --example check_table [MISTAKE...]`; the mistake `right` stands for correct pictures. Mistakes
+//! that Weekender does not know are planted, too: for those, a guess counts as right, and so does no answer.
 
 #[path = "../tests/check/book.rs"]
 mod book;
@@ -91,7 +91,7 @@ const UNKNOWN: [(&str, &str); 10] = [
 
 const SIZE: [u32; 2] = [240, 135];
 
-/// What is said of planted mistakes, with `--stage` or without.
+/// The answers for planted mistakes, with `--stage` or without.
 #[derive(Default)]
 struct Tally {
     named: usize,
@@ -170,7 +170,8 @@ fn planted(stage: &'static str, mistake: &'static str, samples: u32, seed: u64) 
     Mine::of_bytes(shown, SIZE)
 }
 
-/// What is found in a picture, and in how many seconds. If two mistakes give the same picture, the planted one counts.
+/// The finding for a picture, and how many seconds it took. If two mistakes give the same picture, the planted one
+/// counts.
 fn found(mine: &Mine, stage: Option<&str>, planted: &str) -> anyhow::Result<(String, f64)> {
     let begin = Instant::now();
     let finding = judge(mine, stage.map(Stage::find).transpose()?, |_| {})?;

@@ -12,7 +12,7 @@ fn figure(series: Vec<Series>) -> Figure {
 }
 
 #[test]
-fn what_cannot_be_shown_is_left_out() {
+fn unshowable_points_are_left_out() {
     let values = [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-300, 1e300];
     let points = values.map(|y| Point { x: y, y, spread: Some([-y, y]) }).to_vec();
     let odd = Series { name: "odd".to_owned(), points, look: Look::Measured };

@@ -115,7 +115,7 @@ fn texture_of_single_pixels_is_not_erased() {
     }
 }
 
-/// If few paths find light, no error is stated that is far too low, and the mean stays.
+/// If few paths find light, the stated error is not far too low, and the mean stays.
 #[test]
 fn rare_light_is_neither_overlooked_nor_lost() {
     let size = [48, 27];
@@ -175,7 +175,7 @@ fn gains_and_estimates_of_large_pictures() {
 }
 
 #[test]
-fn the_program_writes_denoised_pictures_and_leaves_the_film_alone() {
+fn program_denoises_pictures_but_not_films() {
     let directory = tempfile::tempdir().unwrap();
     let at = |name: &str| directory.path().join(name);
     let run = |flags: &str| {

@@ -99,7 +99,7 @@ fn difference_is_found_and_marked() {
 }
 
 #[test]
-fn equal_sides_agree_to_the_bit_and_others_within_the_tolerance() {
+fn sides_agree_to_the_bit_or_within_tolerance() {
     let (code, text, errors) = diff(&["--sides", "cpu,cpu", "--pixel", "400,220", "--sample", "7"]);
     assert_eq!(code, 0, "{errors}");
     assert!(text.contains("the paths agree to the bit"), "{text}");

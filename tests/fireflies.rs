@@ -53,7 +53,7 @@ fn estimates(ball: f64, seeds: u32) -> Vec<(ErrorEstimate, bool)> {
 /// From nearly closed to wide open: the stated interval of two deviations contains the true error, or the estimate is
 /// marked as doubtful.
 #[test]
-fn the_stated_interval_covers_the_truth_or_the_estimate_is_doubted() {
+fn interval_covers_the_truth_or_is_doubted() {
     for ball in [1.4, 1.38, 1.35, 1.3, 1.2, 0.5] {
         let estimates = estimates(ball, 40);
         // Squared errors are unbiased.

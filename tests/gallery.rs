@@ -45,7 +45,7 @@ fn renders_only_outdated_stills() {
     assert!(rendered(at, &SMALL).is_empty());
     assert_eq!(std::fs::read(file("index.html")).unwrap(), page);
 
-    // A damaged byte and a deleted file; a newer file alone is no change.
+    // A damaged byte and a deleted file; a newer file alone does not count as changed.
     let mut bytes = std::fs::read(file("red-sphere.png")).unwrap();
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;

@@ -65,7 +65,7 @@ fn fault_during_pause_is_survived() {
         let Some(backend) = failing(fault, InjectionPoint::Readback, 1) else { return };
         let mut progressive = Progressive::spawn().unwrap();
         progressive.start(RenderRequest::new(job([64, 36]), backend, Plan::samples(64)));
-        // A pause fetches the samples from the device.
+        // A pause reads the samples back from the device.
         for _ in 0..3 {
             progressive.pause();
             std::thread::sleep(Duration::from_millis(5));

@@ -9,7 +9,7 @@ use std::fs;
 const PICTURE: [&str; 7] = ["--batch", "--size", "32x18", "--samples", "8", "--device", "cpu"];
 
 #[test]
-fn the_log_is_off_unless_it_is_asked_for() {
+fn log_is_off_by_default() {
     let directory = tempfile::tempdir().unwrap();
     assert_eq!(ends(directory.path(), 0, &PICTURE).1, "");
     let logged = |filter: &str| {
@@ -25,7 +25,7 @@ fn the_log_is_off_unless_it_is_asked_for() {
 }
 
 #[test]
-fn a_log_file_has_passes_and_checkpoints_and_replaces_no_picture() {
+fn log_file_has_passes_and_replaces_no_picture() {
     let directory = tempfile::tempdir().unwrap();
     let flags = ["--checkpoint", "film.exr", "--log", "run.log"];
     succeeds(directory.path(), &[&PICTURE[..], &flags].concat());

@@ -28,18 +28,18 @@ fn reports(directory: &Path) -> Vec<PathBuf> {
 }
 
 #[test]
-fn a_panic_of_the_tracer_leaves_a_whole_picture_and_a_warning() {
+fn tracer_panic_leaves_a_whole_picture_and_a_warning() {
     let directory = tempfile::tempdir().unwrap();
     let at = |name: &str| directory.path().join(name);
     for (tiles, level) in [("0", "auto"), ("7", "auto"), ("20", "auto"), ("20", "portable")] {
-        // On two threads a pass has 12 tiles. There are two passes at least: 96 is no power of two.
+        // On two threads a pass has 12 tiles. There are at least two passes, because 96 is not a power of two.
         let flags = ["--threads", "2", "--isa", level, "--size", "100x70", "--samples", "96"];
         let files = ["--simulate-panic", tiles, "--out", "broken.exr", "--json", "broken.json"];
         let arguments = [&flags[..], &files, &["--log", "broken.log"]].concat();
         let (code, _, said) = outcome(&weekender(directory.path(), &arguments).output().unwrap());
         assert_eq!(code, Some(0), "{tiles}: {said}");
         assert!(said.contains("panicked") && said.contains("continues the same picture"), "{tiles}: {said}");
-        // The render goes on, so a line in the log is enough.
+        // The render continues, so a line in the log is enough.
         assert!(reports(directory.path()).is_empty(), "{tiles}: {said}");
         let log = fs::read_to_string(at("broken.log")).unwrap();
         assert!(log.contains("ERROR") && log.contains("internal error in thread trace"), "{log}");
@@ -54,7 +54,7 @@ fn a_panic_of_the_tracer_leaves_a_whole_picture_and_a_warning() {
 }
 
 #[test]
-fn a_panic_of_the_program_keeps_the_samples_and_leaves_a_report() {
+fn program_panic_keeps_samples_and_leaves_a_report() {
     let directory = tempfile::tempdir().unwrap();
     let more = ["--checkpoint", "kept.exr", "--seed", "77"];
     let mut command = weekender(directory.path(), &[&CRASH[..], &more].concat());
@@ -76,7 +76,7 @@ fn a_panic_of_the_program_keeps_the_samples_and_leaves_a_report() {
 }
 
 #[test]
-fn a_report_has_other_places_if_there_is_none_for_temporary_files() {
+fn report_is_written_without_a_temporary_directory() {
     let directory = tempfile::tempdir().unwrap();
     let mut command = weekender(directory.path(), &CRASH);
     command.env("TMPDIR", "/dev/null").env("XDG_STATE_HOME", "/dev/null");
@@ -86,9 +86,9 @@ fn a_report_has_other_places_if_there_is_none_for_temporary_files() {
     assert!(directory.path().join("kept.png").exists(), "{said}");
 }
 
-/// The test runs itself in a process of its own, because what is done about a panic is set for the whole process.
+/// The test runs itself in a separate process, because the panic hook is set for the whole process.
 #[test]
-fn a_panic_outside_of_a_render_leaves_a_report_too() {
+fn panic_outside_a_render_leaves_a_report() {
     const CHILD: &str = "WEEKENDER_TEST_OF_A_PANIC";
     if std::env::var_os(CHILD).is_some() {
         journal::watched("weekender of a test".to_owned(), || panic!("outside of a render"));
@@ -96,7 +96,7 @@ fn a_panic_outside_of_a_render_leaves_a_report_too() {
     }
     let directory = tempfile::tempdir().unwrap();
     let mut command = Command::new(std::env::current_exe().unwrap());
-    command.args(["--exact", "a_panic_outside_of_a_render_leaves_a_report_too"]).env(CHILD, "1");
+    command.args(["--exact", "panic_outside_a_render_leaves_a_report"]).env(CHILD, "1");
     command.current_dir(directory.path()).env("TMPDIR", directory.path());
     let (code, _, said) = outcome(&command.output().unwrap());
     assert!(code == Some(0) && said.contains("a report is in "), "{said}");

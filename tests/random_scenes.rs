@@ -20,10 +20,10 @@ use weekender::measure::{Candidate, Traced};
 use weekender::render_cpu::{CpuOptions, Isa};
 use weekender::scene::{Material, Scene, Sky};
 
-/// By how much a mean may differ apart from noise, linear radiance.
+/// Allowed difference of a mean apart from noise, linear radiance.
 const TOLERANCE: f64 = 1e-5;
 
-/// A difference is looked at again with this many times the samples. Where rounding differs, chaotic paths diverge at
+/// A difference is examined again with this many times the samples. Where rounding differs, chaotic paths diverge at
 /// random, a few in a thousand in glass; a wrong picture stays wrong whatever the seed.
 const SECOND_LOOK: u64 = 64;
 
@@ -136,7 +136,7 @@ fn recipe() -> impl Strategy<Value = Recipe> {
     })
 }
 
-/// The scene as it is, and with changes after which the picture must be the same; those that apply.
+/// Pairs of scenes that must give the same picture: one for each change that applies.
 fn changes(recipe: &Recipe) -> Vec<(&'static str, [Recipe; 2])> {
     let extent = recipe.camera.look_from.distance(recipe.camera.look_at);
     let with = |other: Recipe| Some([recipe.clone(), other]);
@@ -265,7 +265,7 @@ fn same([one, other]: &[Traced; 2], share: f64, floor: f64) -> Result<(), String
 }
 
 #[test]
-fn random_scenes_are_the_same_in_single_precision_and_after_changes_that_must_not_matter() {
+fn random_scenes_survive_single_precision_and_neutral_changes() {
     let seconds =
         std::env::var("WEEKENDER_SEARCH_SECONDS").ok().and_then(|text| text.parse().ok()).unwrap_or(2.0);
     let (begin, limit) = (Instant::now(), Duration::from_secs_f64(seconds));

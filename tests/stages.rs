@@ -32,7 +32,7 @@ fn every_stage_can_be_rendered_shown_and_compared() {
             let looks = |recipe: &Recipe| (recipe.camera, recipe.rules, recipe.scene.clone());
             assert!(looks(&recipe) != looks(&other), "{}: the same picture", stage.id);
         }
-        // "Show me" must not show the picture as it is, or something outside of it.
+        // "Show me" must not show the picture as it is, or something outside it.
         let [left, top, right, bottom] = stage.sight.part.unwrap_or([0.0, 0.0, 1.0, 1.0]);
         assert!(0.0 <= left && left < right && right <= 1.0, "{}", stage.id);
         assert!(0.0 <= top && top < bottom && bottom <= 1.0, "{}", stage.id);
@@ -47,9 +47,9 @@ fn every_stage_can_be_rendered_shown_and_compared() {
     }
 }
 
-/// Equal jobs have equal samples, so a film may go on only if nothing of them differs.
+/// Equal jobs have equal samples, so a film may continue only if no part of its job differs.
 #[test]
-fn a_job_with_another_part_is_another_job() {
+fn changing_any_part_changes_the_job() {
     let base = recipe("lambertian-gamma");
     let changed = |change: &dyn Fn(&mut Recipe)| {
         let mut recipe = base.clone();

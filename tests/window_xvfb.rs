@@ -314,12 +314,12 @@ fn a_panic_of_the_window_keeps_its_film_and_leaves_a_report() {
     assert!(report.contains("injected fault") && report.contains("--stage glass-refract"), "{report}");
 }
 
-/// Where a window saves its film by itself.
+/// Where a window autosaves its film.
 fn autosave(home: &Path) -> PathBuf {
     home.join("state/weekender/autosave.exr")
 }
 
-/// The files of this ending in a directory, if that exists.
+/// The files with this ending in a directory, if it exists.
 fn files(directory: &Path, ending: &str) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(directory).into_iter().flatten().map(|entry| entry.unwrap().path());
     entries.filter(|path| path.extension().is_some_and(|own| own == ending)).collect()
@@ -358,7 +358,7 @@ fn a_killed_window_loses_little_and_a_terminated_one_nothing() {
     second.kill().unwrap();
     second.wait().unwrap();
 
-    // A window that is terminated saves its film, and the next one goes on with that.
+    // A window that is terminated saves its film, and the next one continues it.
     let resume = home.path().join("resumed.exr");
     std::fs::copy(&left, &resume).unwrap();
     let goes_on = ["--resume", resume.to_str().unwrap(), "--samples", "4000000000"];
@@ -385,7 +385,7 @@ fn a_killed_window_loses_little_and_a_terminated_one_nothing() {
     assert!(film == checkpoint::load(&whole).unwrap().film);
 }
 
-/// Spheres of the picture with which a window goes on after one that had this state directory.
+/// Number of spheres in the picture of a window that continues from this state directory.
 fn spheres_after(state: &Path) -> usize {
     let copy = tempfile::tempdir().unwrap();
     for entry in std::fs::read_dir(state).unwrap() {
@@ -461,7 +461,7 @@ fn without_a_display_the_message_names_the_way_out() {
 
 /// As with `ssh -X`, and with a factor that no window fits.
 #[test]
-fn a_display_that_cannot_show_the_window_is_refused_in_words() {
+fn unusable_display_is_refused_with_a_message() {
     let home = tempfile::tempdir().unwrap();
     let Some(display) = Display::with(&["-extension", "RANDR"]) else { return };
     let refused = |command: &mut Command| {

@@ -61,7 +61,7 @@ fn at<S: Instructions>(simd: S, width: usize, body: &impl Body) -> u32 {
     }
 }
 
-/// [`COUNT`] vectors with a number each, as the prepared scene have their records.
+/// [`COUNT`] vectors, each with a number, laid out like the records of a prepared scene.
 pub struct Vectors(Vec<RecordColumns<f32>>);
 
 impl Vectors {

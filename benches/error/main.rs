@@ -1,4 +1,4 @@
-//! How true the stated errors are, and what the denoised pictures gain: `cargo bench --bench error -- [--samples 4,16]
+//! How accurate the stated errors are, and how much denoising gains: `cargo bench --bench error -- [--samples 4,16]
 //! [--seeds 2] [--size 200x112] [--reference 8192] [SCENE...]`.
 //!
 //! A scene is `three-spheres` or another built-in one, `dots`, `dim`, `cage`, `random` or a scene file. Without any, all of

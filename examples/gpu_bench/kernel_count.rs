@@ -88,8 +88,8 @@ impl Counted {
         block.iter().map(of).sum()
     }
 
-    /// Operations of one turn of the path loop, with both sides of every branch. `trips` are the turns of the loops
-    /// over spheres.
+    /// Operations of one iteration of the path loop, with both sides of every branch. `trips` are the iterations of the
+    /// loops over spheres.
     pub fn turn(&self, trips: &[usize]) -> Cost {
         let mut trips = trips.iter().copied();
         let mut cost = Cost::default();

@@ -5,10 +5,10 @@
 //! `gpu_bench hierarchy SCENE...` prints the size of the hierarchy and how long it takes to build.
 //! `gpu_bench adapter [adapter=NAME]` prints the adapter.
 //! `gpu_bench size SCENE...` prints how large each scene's kernel is, general and specialised.
-//! `gpu_bench work SCENE...` prints the operations of one turn of the path loop, for scenes without a hierarchy.
+//! `gpu_bench work SCENE...` prints the operations of one iteration of the path loop, for scenes without a hierarchy.
 //! `gpu_bench passes SCENE WIDTH HEIGHT SAMPLES DEPTH PASSES [OPTION...]` prints the cost of passes whose films are
-//! read at once, and of passes whose films stay on the device.
-//! `gpu_bench first SCENE WIDTH HEIGHT DEPTH [OPTION...]` prints the time from a change to its first picture.
+//! read at once, and of passes whose films stay on the device. `gpu_bench first SCENE WIDTH HEIGHT DEPTH [OPTION...]`
+//! prints the time from a change to its first picture.
 
 mod kernel_count;
 
@@ -139,7 +139,7 @@ fn size(scene: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The cost of one turn of the loop (one ray per lane) when lanes diverge: both sides of every branch.
+/// The cost of one iteration of the loop (one ray per lane) when lanes diverge: both sides of every branch.
 fn work(scene: &str) -> anyhow::Result<()> {
     let job = job(scene, [64, 36, 24])?;
     let prepared = PreparedScene::<f32>::new(&job);

@@ -43,7 +43,8 @@ impl Way {
         }
     }
 
-    /// The program's shaders. With one thread per sample, a thread has a single block instead of every one of its pixel.
+    /// The program's shaders. With one thread per sample, a thread has a single block instead of all blocks of its
+    /// pixel.
     fn source(self) -> anyhow::Result<String> {
         let mut text = shared();
         if matches!(self, Way::SamplesOfATile | Way::SamplesOfAPixel) {
@@ -54,7 +55,7 @@ impl Way {
         Ok(text + ENTRIES)
     }
 
-    /// Most samples in a block.
+    /// Maximum number of samples in a block.
     fn block_limit(self) -> u32 {
         match self {
             Way::Pixels => u32::MAX,

@@ -43,11 +43,11 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What the command line asks for.
+/// Options from the command line.
 struct Options {
     /// Samples per pixel.
     samples: u64,
-    /// Runs of each row, after one that does not count.
+    /// Runs of each row, after an untimed warm-up.
     runs: usize,
     adapter: Option<String>,
 }

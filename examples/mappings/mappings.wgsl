@@ -37,7 +37,7 @@ fn samples_of_a_tile(@builtin(workgroup_id) group: vec3u, @builtin(local_invocat
     }
 }
 
-// One thread per sample: a group has as many samples of one pixel.
+// One thread per sample: a group's threads have samples of the same pixel.
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn samples_of_a_pixel(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) thread: u32) {
     own_item = group.y * WORKGROUP_SIZE + thread;

@@ -78,7 +78,7 @@ fn completed_argument(argument: &Arg) -> Arg {
     shown
 }
 
-/// Adds the built-in scenes to the files that complete `--scene`, which clap cannot say.
+/// Adds the built-in scenes to the files that complete `--scene`, which clap cannot express.
 fn with_scenes(shell: Shell, text: String) -> String {
     let names: Vec<&str> = BuiltinScene::ALL.iter().map(|scene| scene.name).collect();
     match shell {

@@ -13,7 +13,7 @@ fn pixels(path: &Path) -> Vec<u8> {
 const KEYFRAMED: [&str; 2] = ["--scene", "scene.toml"];
 
 #[test]
-fn a_frame_alone_has_the_same_bits_as_in_a_run() {
+fn single_frame_matches_its_run() {
     let directory = temp();
     for (name, path) in [("turn", &["--turntable=9"][..]), ("keys", &KEYFRAMED)] {
         let run = |frames: &str, out: &str| {

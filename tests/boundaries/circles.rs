@@ -85,7 +85,7 @@ impl Crate<'_> {
             } else if let Some(module) = child(&at, name) {
                 at = module;
             } else {
-                // A module may pass on what another defines.
+                // A module may re-export what another defines.
                 let imports = &self.0.get(&at)?.0;
                 let passed = imports.iter().find(|import| import.name == *name);
                 let path = passed.map(|import| [import.path.as_slice(), after].concat());

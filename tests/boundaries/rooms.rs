@@ -1,6 +1,6 @@
 //! Which room may use which.
 
-/// Each room with the rooms that it may use, one row a room. Lower layers come first.
+/// Each room with the rooms that it may use, one row per room. Lower layers come first.
 pub const ROOMS: &str = "\
 system:
 numbers:

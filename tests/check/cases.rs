@@ -37,7 +37,7 @@ fn right_pictures_are_not_accused() {
 }
 
 #[test]
-fn lossy_pictures_are_not_accused_surely() {
+fn lossy_pictures_get_only_guesses() {
     for (name, part) in [("right-jpeg75.png", "JPEG"), ("right-blurred.png", "smoothed")] {
         let (mine, finding) = checked(name, None);
         let answer = finding.answer(&mine);
@@ -70,7 +70,7 @@ fn mistakes_are_named() {
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
-    // Of half a step in a byte, only a guess can be made.
+    // Half a step of a byte allows only a guess.
     let (_, finding) = checked("gradient-over-width.png", None);
     assert!(crate::ids(&finding).contains(&"gradient-over-width"), "{:?}", finding.named());
     let (mine, finding) = checked("half-bright.png", Some("lambertian-gamma"));

@@ -35,7 +35,7 @@ fn ids(finding: &Finding) -> Vec<&'static str> {
 }
 
 #[test]
-fn noise_is_no_mistake() {
+fn noise_is_not_a_mistake() {
     for stage in book::STAGES {
         for samples in [10, 60] {
             let mine = mine(stage, "", samples, u64::from(samples));
@@ -84,9 +84,9 @@ fn planted_mistakes_are_named() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Some mistake always comes nearer than none, but no mistake turns one scene into another.
+/// Some mistake is always closer than none, but no mistake turns one scene into another.
 #[test]
-fn other_scene_matches_no_mistake_surely() {
+fn other_scene_gets_only_guesses() {
     for (shown, stage) in [("lambertian-gamma", "hollow-glass"), ("metal-fuzzy", "lambertian-gamma")] {
         let finding = judge(&mine(shown, "", 30, 7), Some(Stage::find(stage).unwrap()), |_| {}).unwrap();
         assert!(!finding.is_sure, "{shown} as {stage}: {:?}", ids(&finding));
@@ -119,7 +119,7 @@ fn without_a_stage_no_answer_is_surely_wrong() {
         let named = ids(&finding);
         assert!(!finding.is_sure || named.contains(&mistake), "{stage}, {mistake}: {named:?}");
     }
-    // What changes most of the picture does not hide which stage it is.
+    // Even a mistake that changes most of the picture does not hide its stage.
     for mistake in ["sky-reversed", "last-hit-wins"] {
         let finding = judge(&mine("lambertian-gamma", mistake, 60, 3), None, |_| {}).unwrap();
         assert!(finding.is_sure && ids(&finding).contains(&mistake), "{mistake}: {:?}", ids(&finding));

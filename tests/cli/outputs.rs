@@ -43,7 +43,7 @@ fn list_names_scenes_stages_and_devices() {
 }
 
 #[test]
-fn an_output_is_no_input_and_no_other_output() {
+fn outputs_never_replace_inputs_or_each_other() {
     let directory = temp();
     let path = |name: &str| directory.path().join(name);
     render(directory.path(), &["--samples", "2", "--checkpoint", "g.exr"]);
@@ -52,7 +52,7 @@ fn an_output_is_no_input_and_no_other_output() {
     let endless = ["--batch", "--samples", "4294967296", "--size", "32x18"];
     let refused =
         |more: &[&str], parts: &[&str]| refused_in(&directory, &[&endless[..], more].concat(), parts);
-    refused(&["--out", "x.exr", "--checkpoint", "./x.exr"], &["x.exr", "name of its own"]);
+    refused(&["--out", "x.exr", "--checkpoint", "./x.exr"], &["x.exr", "its own name"]);
     refused(&["--resume", "g.exr", "--json", "./g.exr"], &["g.exr"]);
     refused(&["--scene", "s.toml", "--save-scene", "./s.toml"], &["s.toml"]);
     let frames = ["--turntable=3", "--out", "fr", "--json", "fr/frame-0001.png"];
@@ -115,7 +115,7 @@ fn json_has_the_figures() {
 
 /// Its loader takes time, and some of its libraries print messages of their own.
 #[test]
-fn only_what_may_need_a_gpu_looks_for_one() {
+fn only_commands_that_may_need_a_gpu_look_for_one() {
     let directory = temp();
     let picture = ["--batch", "--device", "cpu", "--size", "16x9", "--samples", "1", "--out", "a.png"];
     for arguments in [&picture[..], &["info", "a.png"], &["compare", "a.png", "a.png"]] {
@@ -125,7 +125,7 @@ fn only_what_may_need_a_gpu_looks_for_one() {
     }
 }
 
-/// As on a server: graphics libraries then print errors that read as the program's.
+/// As on a server: graphics libraries then print errors that look like the program's.
 #[test]
 fn libraries_print_nothing() {
     let directory = temp();

@@ -11,7 +11,7 @@ use tempfile::TempDir;
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
-/// When the newest file below a path was changed.
+/// Modification time of the newest file below a path.
 fn changed(path: &Path) -> SystemTime {
     let own = path.metadata().unwrap().modified().unwrap();
     let inside = path.read_dir().into_iter().flatten();
@@ -37,7 +37,7 @@ fn obstacle() -> Option<String> {
     (!is_new).then(|| format!("{} is missing or old: {builder} web builds it", script.display()))
 }
 
-/// Pictures: a right one, one with a mistake, one that is no picture, one with too many pixels.
+/// Pictures: a right one, one with a mistake, one that is not a picture, one with too many pixels.
 fn pictures(directory: &Path) -> Vec<PathBuf> {
     // Its name looks like a flag.
     succeeds(directory, &["--batch", "--stage", "ppm-gradient", "--size", "64x36", "--out", "./-mine.ppm"]);

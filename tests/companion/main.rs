@@ -18,7 +18,7 @@ use std::process::Stdio;
 use std::sync::LazyLock;
 use tempfile::TempDir;
 
-/// Most bytes of the page and its quick stills.
+/// Maximum size of the page and its quick stills, bytes.
 const SIZE_LIMIT: u64 = 6_000_000;
 
 const QUICK: [&str; 6] = ["companion", "--quick", "--progress", "off", "--out", "out"];
@@ -79,7 +79,7 @@ fn ctrl_c_keeps_page_and_tells_how_to_resume() {
     assert!(directory.path().join("index.html").exists());
 }
 
-/// The small pictures come first and have no progress of their own; a quick still is done in one pass.
+/// The small pictures come first and show no progress; a quick still takes a single pass.
 #[cfg(unix)]
 #[test]
 fn ctrl_c_ends_quick_pictures() {

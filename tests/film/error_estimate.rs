@@ -70,7 +70,7 @@ fn film_with_noise_in(pixels: u32, noisy: usize) -> Film {
 }
 
 #[test]
-fn an_estimate_of_few_pixels_among_many_is_in_doubt() {
+fn estimates_dominated_by_few_pixels_are_doubted() {
     for (pixels, noisy, is_doubted) in
         [(1000, 50, true), (1000, 1000, false), (1000, 300, false), (150, 50, false), (150, 5, true)]
     {

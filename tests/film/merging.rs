@@ -6,7 +6,7 @@ use std::path::Path;
 use weekender::film::{CheckpointError, Description, Film, FilmError, FilmSum, checkpoint, key, merge_files};
 
 #[test]
-fn merged_films_have_rejected_the_samples_of_both() {
+fn rejected_samples_add_up() {
     let mut film = Film::new(1, 1, 2);
     film.record(0..4, 3).unwrap();
     let mut other = Film::new(1, 1, 2);

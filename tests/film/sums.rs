@@ -98,7 +98,7 @@ fn the_upper_half_can_stay_linear() {
 }
 
 #[test]
-fn rows_are_the_picture_s_rows() {
+fn resolved_rows_match_the_picture() {
     for halves in [1, 2] {
         let film = noisy_film(7, 5, halves, &[0..6]);
         for transfer in [Transfer::Linear, Transfer::Gamma2, Transfer::LinearAboveGamma2] {

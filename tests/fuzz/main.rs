@@ -64,7 +64,7 @@ const FLAG_WORDS: &str = "--batch --scene --stage --size --samples --depth --see
 const NUMBERS: &str = "0 -0 -1 1 1e308 -1e308 1e-320 1e400 nan inf -inf 0.5 4294967296 4294967295 9223372036854775807 \
     18446744073709551615 99999999999999999999999999 0x7f 1e 16384 16385 20000";
 
-/// At a place of an input, so many bytes are replaced by others.
+/// A place in the input, how many bytes are replaced there, and the new bytes.
 type Change = (Index, Option<usize>, Vec<u8>);
 
 fn change(words: &'static str) -> impl Strategy<Value = Change> {
@@ -143,7 +143,7 @@ fn scene(input: &[u8]) -> usize {
     }
     let Ok(recipe) = file::parse(text, "a.toml") else { return 0 };
     let again = file::parse(&file::to_toml(&recipe), "a.toml").unwrap();
-    assert_eq!(again.job().unwrap(), recipe.job().unwrap(), "a scene is another when it is read back");
+    assert_eq!(again.job().unwrap(), recipe.job().unwrap(), "a scene changes when it is read back");
     2000 * recipe.scene.spheres.len()
 }
 

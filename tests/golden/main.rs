@@ -96,8 +96,8 @@ fn check(name: &str, actual: &str) {
     assert!(differences.is_empty(), "{} films differ from {name}: {differences:#?}", differences.len());
 }
 
-/// The rows of all pictures, made by several threads. They are none of rayon's: one of those would begin another picture
-/// on its stack while it waits for the threads of a renderer, and another one in that.
+/// The rows of all pictures, made by several threads. They are not rayon's: one of those would begin another picture on
+/// its stack while it waits for a renderer's threads, and another one inside that.
 fn rows(pictures: &[(String, Recipe)], row: impl Fn(&(String, Recipe)) -> String + Sync) -> String {
     let share = pictures.len().div_ceil(thread::available_parallelism().map_or(1, usize::from));
     thread::scope(|scope| {

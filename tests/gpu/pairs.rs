@@ -98,9 +98,9 @@ fn every_job_matches_cpu_by_sample() {
     assert!(failures.is_empty(), "{failures:?}");
 }
 
-/// How much rounding shows depends on the device, but the picture is no other.
+/// How much rounding shows depends on the device, but the picture is the same.
 #[test]
-fn stages_of_rounding_errors_are_as_bright() {
+fn rounding_stages_are_equally_bright() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     for (name, job) in jobs(48, 32).into_iter().filter(|(_, job)| job.rules().surface != SurfaceRule::Exact) {
         let of = |renderer: &mut dyn Renderer| picture_mean(&rendered(renderer, &job, 64));

@@ -174,14 +174,14 @@ fn cancelled_between_dispatches() {
 }
 
 #[test]
-fn samples_stay_on_device_until_fetched() {
+fn samples_stay_on_device_until_read_back() {
     let new = || gpu(GpuOptions { film_limit: Some(50 * 2 * 24 * 16), ..GpuOptions::default() });
     let (Some(mut other), Some(mut gpu)) = (new(), new()) else { return };
     let job = three_spheres([50, 43], 12, true);
     let expected = rendered(&mut other, &job, 32);
     let mut film = job.new_film();
     gpu.prepare(&job, &go_on()).unwrap();
-    // The first pass fetches the film by itself, because the cost of fetching is still unknown.
+    // The first pass reads the film back on its own, because the cost of a readback is still unknown.
     let mut rays = gpu.advance(&job, 0..4, &mut film, &Control::deferring(&go_on())).unwrap().stats().rays;
     assert_eq!((film.sample_count(), rays), (0, 0));
     let second = gpu.advance(&job, 4..8, &mut film, &Control::deferring(&go_on())).unwrap().stats();

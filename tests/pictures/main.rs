@@ -62,7 +62,7 @@ fn the_same_picture_is_equal_in_every_form() {
 }
 
 #[test]
-fn the_step_of_a_half_float_is_no_difference_but_two_are() {
+fn one_half_float_step_is_equal_but_two_differ() {
     let [float, half] = ["float.exr", "half.exr"].map(picture);
     assert!(half.steps.is_some() && half.limit.is_infinite() && float.steps.is_none());
     assert!(compare_sides(&[half.clone(), half.clone()]).unwrap().is_same);
@@ -102,7 +102,7 @@ fn the_display_window_is_the_picture() {
 }
 
 #[test]
-fn what_is_ignored_is_noted() {
+fn ignored_properties_are_noted() {
     for (name, part) in [
         ("alpha.exr", "64 of its pixels have an alpha other than 1"),
         ("alpha.png", "48 of its pixels have an alpha other than 1"),
@@ -117,7 +117,7 @@ fn what_is_ignored_is_noted() {
 }
 
 #[test]
-fn a_film_that_was_saved_again_is_a_picture() {
+fn resaved_film_is_a_picture() {
     let film = checkpoint::load(&file("film.exr")).unwrap().film;
     for name in ["film-same.exr", "film-rgb.exr", "film-half.exr"] {
         assert!(matches!(checkpoint::load(&file(name)), Err(CheckpointError::Resaved { .. })), "{name}");
@@ -212,7 +212,7 @@ fn binary_pictures_are_read_and_their_faults_named() {
 }
 
 #[test]
-fn files_that_are_no_pictures_are_refused() {
+fn non_pictures_are_refused() {
     for (file, word) in [
         (&b"P3 2 2 255 0 0 0 0 0 0 0"[..], "1 of 2 rows"),
         (b"P3 2 2 255 0 0 0", "12 numbers"),
@@ -232,7 +232,7 @@ fn files_that_are_no_pictures_are_refused() {
 
 /// Values are scaled by the largest one; alpha is ignored.
 #[test]
-fn bytes_of_a_picture_are_those_of_255() {
+fn values_are_scaled_to_255() {
     for (file, byte) in [
         ("P3 1 1 1 0 1 1", [0, 255, 255]),
         ("P3 1 1 65535 0 32768 65535", [0, 128, 255]),
@@ -292,7 +292,7 @@ fn ramp(index: u32) -> f64 {
 }
 
 #[test]
-fn what_a_png_says_about_its_colours_is_used_or_noted() {
+fn png_colour_chunks_are_used_or_noted() {
     use png::chunk::{cHRM, cICP, gAMA, sRGB};
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("a.png");

@@ -119,7 +119,7 @@ fn invalid_plans_and_merges_are_refused() {
 
 /// As editors of Windows and git's `autocrlf` change text files.
 #[test]
-fn line_ends_and_a_byte_order_mark_change_no_plan() {
+fn line_ends_and_byte_order_marks_do_not_matter() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     plan(at, "p", &["--samples", "4", "--parts", "2"]);

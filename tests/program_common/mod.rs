@@ -12,7 +12,7 @@ use weekender::film::{Film, checkpoint};
 
 pub const PROGRAM: &str = env!("CARGO_BIN_EXE_weekender");
 
-/// Longer than a slow machine takes that has other work.
+/// Longer than a slow, busy machine takes.
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
 pub fn weekender(directory: &Path, arguments: &[&str]) -> Command {
@@ -29,8 +29,8 @@ pub fn weekender(directory: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-/// Gives programs that are started from now on the default action of Ctrl-C and the like, which a shell disables for
-/// what it runs in the background. A program inherits that a signal is ignored, but no handler.
+/// Gives programs that are started from now on the default action of Ctrl-C and similar signals, which a shell disables
+/// for background jobs. A program inherits ignored signals, but no handlers.
 #[cfg(unix)]
 pub fn restore_signals() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};

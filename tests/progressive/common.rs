@@ -301,7 +301,7 @@ pub fn stopped(progressive: Progressive) -> Status {
     status
 }
 
-/// The messages of a render, but not that its tiny picture tells little about the error.
+/// The messages of a render, except the one that its tiny picture says little about the error.
 pub fn said(status: &Status) -> Vec<String> {
     let is_about_error = |message: &&String| message.starts_with("an error estimate needs");
     status.messages.iter().filter(|message| !is_about_error(message)).cloned().collect()

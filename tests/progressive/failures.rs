@@ -50,7 +50,7 @@ fn last_whole_pass_survives_when_all_backends_fail() {
 }
 
 #[test]
-fn a_panic_while_preparing_tracing_or_looking_ends_nothing() {
+fn panics_do_not_end_the_render() {
     let mut is_first = true;
     let progressive = started_with(FAILING, Plan::samples(2000), move |choice| {
         assert!(!std::mem::take(&mut is_first), "no such backend");

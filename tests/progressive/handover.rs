@@ -27,7 +27,7 @@ fn another_backend_continues_the_same_film() {
 }
 
 #[test]
-fn the_history_of_a_backend_ends_where_another_one_takes_over() {
+fn history_ends_where_another_backend_takes_over() {
     let progressive = started_with(CPU, Plan::samples(3000), |choice| Box::new(Fake::new(choice.name())));
     wait_for(&progressive, 100);
     progressive.switch_backend(FAILING);

@@ -59,7 +59,7 @@ fn unwatched_first_pass_has_full_length() {
         assert_eq!(history(trial, samples.clone()), expected, "{trial:?}");
     }
     assert_eq!(history(Some([1, 1]), Plan::samples(200)), doubling, "someone watches");
-    // Of a time limit the first pass takes no more than there is: 20 samples.
+    // The first pass takes no longer than the time limit allows: 20 samples.
     let in_time =
         Plan { pass_target: PATIENCE, ..batch(Stop { seconds: Some(20.0), ..Stop::at_samples(200) }) };
     assert_eq!(history(Some([1000, 1000]), in_time)[0], 16);
@@ -102,7 +102,7 @@ fn time_limit_includes_preparation_but_allows_one_pass() {
 }
 
 #[test]
-fn the_noise_target_ends_it() {
+fn noise_target_ends_the_render() {
     let target = expected(64).error().unwrap().rmse;
     let progressive = started(CPU, to_noise(target));
     let status = progressive.wait_until_over();

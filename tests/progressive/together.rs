@@ -38,7 +38,7 @@ fn rendered(together: &mut Together) -> (Film, Vec<(&'static str, u64)>) {
 }
 
 #[test]
-fn members_add_up_what_they_have_traced() {
+fn samples_of_all_members_add_up() {
     let mut together = Together::new(vec![fake("cpu", None), fake("gpu", None)]);
     let BackendInfo { name, threads, .. } = together.info();
     assert_eq!((name, threads), ("cpu,gpu", 2));

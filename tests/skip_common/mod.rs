@@ -1,4 +1,4 @@
-//! What a test does that lacks a tool or an adapter.
+//! What to do when a test lacks a tool or an adapter.
 #![allow(dead_code, reason = "each test uses some of it")]
 
 use std::io::Write;

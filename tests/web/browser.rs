@@ -18,7 +18,7 @@ const PACKAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/web/node_modul
 /// Makes Chromium's software adapter an ordinary Vulkan adapter.
 const SWIFTSHADER: &str = "/usr/lib/chromium/vk_swiftshader_icd.json";
 
-/// What is in the way of this test, if something is.
+/// What prevents this test; `None` if nothing does.
 fn obstacle() -> Option<String> {
     let cannot_run = |program: &str| {
         let ran = Command::new(program).arg("--version").output();

@@ -1,4 +1,4 @@
-//! What a change by the reader starts again, run by node without a browser.
+//! What restarts after a change by the reader, run by node without a browser.
 
 use super::page::SCRIPT;
 use std::process::Command;

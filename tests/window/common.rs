@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use weekender::app::{Command, Sizing, Window};
 use weekender::cli::{self, Request};
 
-/// Longer than a slow machine takes that has other work.
+/// Longer than a slow, busy machine takes.
 const PATIENCE: Duration = Duration::from_secs(180);
 
 /// The usual small picture.

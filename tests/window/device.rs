@@ -7,7 +7,7 @@ use std::time::Duration;
 use weekender::app::{Command, Device};
 
 #[test]
-fn another_device_goes_on_with_the_same_film() {
+fn another_device_continues_the_film() {
     let mut harness = open("--stage glass-schlick --size 64x36 --samples 4000000000");
     until(&mut harness, "samples", has_samples(8));
     let (run, before) = (harness.state().status().run, harness.state().status().samples_per_pixel);

@@ -30,7 +30,7 @@ fn says(words: &str) -> impl Fn(&Window) -> bool {
     move |window| window.messages().iter().any(|message| message.contains(words))
 }
 
-/// The pixels that the recipe in a file gives with the number of samples that the file states.
+/// The pixels of a render of a file's recipe, with the number of samples that the file states.
 fn rendered_again(path: &Path) -> Vec<u8> {
     let description = read_description(path).unwrap();
     let recipe = file::parse(description.recipe(), "again").unwrap();
@@ -59,7 +59,7 @@ fn saved_files_open_again_and_keep_other_stages() {
             let pixels = image::open(&path).unwrap().to_rgb8().into_raw();
             assert!(pixels == rendered_again(&path), "{format:?} differs from a render of its recipe");
         }
-        // The user's own stop is taken over by the next stages, that of a file is not.
+        // The next stages keep the user's own stop condition, but not that of a file.
         send(&mut harness, Command::Stage(Stage::find("metal").unwrap()));
         let own = Stop { noise: Some(0.05), ..Stop::default() };
         harness.state_mut().document_mut().stop = own;
@@ -89,7 +89,7 @@ fn saved_files_open_again_and_keep_other_stages() {
 }
 
 #[test]
-fn failures_are_told_and_what_is_shown_stays() {
+fn failures_are_reported_and_the_picture_stays() {
     let directory = tempfile::tempdir().unwrap();
     let mut harness = open(SMALL);
     until(&mut harness, "a picture", has_samples(1));
@@ -154,7 +154,7 @@ fn close(harness: &mut Harness<'_, Window>) -> Vec<egui::ViewportCommand> {
 }
 
 #[test]
-fn a_window_that_still_renders_to_save_asks_before_it_closes() {
+fn closing_asks_while_a_save_renders() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("large.png");
     let mut harness = open("--stage defocus --size 48x27 --samples 64 --device cpu");
@@ -187,7 +187,7 @@ fn a_window_that_still_renders_to_save_asks_before_it_closes() {
 
 /// What a button of a message offers is what it does.
 #[test]
-fn an_offer_to_undo_goes_when_something_else_was_changed() {
+fn undo_offer_ends_with_the_next_change() {
     let mut harness = open("--stage metal --size 32x18 --device cpu");
     harness.state_mut().document_mut().camera.vfov_degrees = 31.0;
     harness.run_steps(3);
@@ -228,7 +228,7 @@ fn saving_at_another_size_renders_in_the_background() {
 }
 
 #[test]
-fn changes_of_a_stage_that_is_left_come_back_by_undo() {
+fn undo_restores_changes_of_the_previous_stage() {
     let mut harness = open("--stage metal --size 32x18");
     harness.state_mut().document_mut().camera.vfov_degrees = 31.0;
     harness.run_steps(3);

@@ -21,7 +21,7 @@ fn has_card(harness: &Harness<'_, Window>) -> bool {
 }
 
 #[test]
-fn who_asks_for_a_picture_sees_it_without_a_card() {
+fn requested_picture_is_shown_without_a_card() {
     for arguments in ["--stage metal", "--scene book", "--size 32x18", "--vfov 30"] {
         assert!(!has_card(&open(arguments)), "{arguments}");
     }

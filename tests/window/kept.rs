@@ -130,7 +130,7 @@ fn one_key_flips_and_a_change_returns_to_the_live_picture() {
 }
 
 #[test]
-fn a_kept_picture_goes_on_with_its_samples() {
+fn kept_picture_continues_with_its_samples() {
     let mut harness = finished(8);
     keep(&mut harness);
     let kept = harness.state().shown_document().camera;
@@ -187,7 +187,7 @@ fn pictures_of_other_sizes_are_not_subtracted() {
 
 /// A file has 8 bits and no noise of its own.
 #[test]
-fn a_saved_picture_differs_from_its_render_by_noise_only() {
+fn saved_picture_differs_from_its_render_only_by_noise() {
     let mut harness = open("--stage glass-schlick --size 96x54 --samples 16");
     until(&mut harness, "the end", is_done);
     let folder = tempfile::tempdir().unwrap();
@@ -219,7 +219,7 @@ fn only_noise(harness: &mut Harness<'_, Window>) -> String {
 }
 
 #[test]
-fn noise_is_told_from_a_difference() {
+fn noise_is_distinguished_from_a_difference() {
     let mut harness = open("--stage glass-schlick --size 96x54 --samples 16");
     until(&mut harness, "the end", is_done);
     keep(&mut harness);

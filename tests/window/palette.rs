@@ -23,7 +23,7 @@ fn enter(harness: &mut Harness<'_, Window>, text: &str, downs: usize) {
 }
 
 #[test]
-fn what_is_typed_is_done() {
+fn typed_commands_are_carried_out() {
     let mut harness = open(SMALL);
     enter(&mut harness, "", 0);
     assert_eq!(harness.state().performed(), Some(Command::Palette), "Enter in an empty box does nothing");

@@ -52,7 +52,7 @@ pub trait Ask {
     /// The error over time of renders of the same picture that were started again.
     fn earlier_curves(&self) -> Vec<HistoryPoint>;
 
-    /// Whether the two that are compared are equal, and that in words, once it is known.
+    /// Whether the two compared pictures are equal, and the verdict in words, once it is known.
     fn verdict(&self) -> Option<(bool, &'static str)>;
 
     fn disabled_reason(&self, command: Command) -> Option<String>;

@@ -86,7 +86,7 @@ fn settle(harness: &mut Harness<'_, Window>) {
 }
 
 #[test]
-fn the_numbers_are_those_of_the_pixel_that_is_drawn_under_the_pointer() {
+fn numbers_match_the_pixel_under_the_pointer() {
     let mut harness = with_kept();
     for (mode, commands) in [
         ("picture", vec![]),

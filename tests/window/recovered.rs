@@ -68,7 +68,7 @@ fn says(window: &Window, words: &str) -> bool {
 }
 
 #[test]
-fn a_window_that_ended_early_comes_back_with_its_film_unless_another_picture_is_wanted() {
+fn window_that_ended_early_resumes_its_film() {
     let state = tempfile::tempdir().unwrap();
     let film = state.path().join("autosave.exr");
     let mut first = window(&format!("{PICTURE} --samples 4000000000"), state.path(), 0);
@@ -102,7 +102,7 @@ fn a_window_that_ended_early_comes_back_with_its_film_unless_another_picture_is_
 
 /// A film of another picture that was saved earlier does not come in its place.
 #[test]
-fn what_was_edited_last_comes_back_with_its_history() {
+fn last_edits_come_back_with_their_history() {
     let state = tempfile::tempdir().unwrap();
     let film = state.path().join("autosave.exr");
     let mut first = window(&format!("{PICTURE} --samples 4000000000"), state.path(), 0);
@@ -151,7 +151,7 @@ fn no_window_begins_in_full_screen() {
 }
 
 #[test]
-fn what_cannot_be_written_is_told_and_rendering_goes_on() {
+fn failed_autosave_is_reported_and_rendering_continues() {
     let state = tempfile::tempdir().unwrap();
     // Nothing can be written where a folder is.
     std::fs::create_dir_all(state.path().join("autosave.exr/full")).unwrap();

@@ -18,7 +18,7 @@ fn save_film(path: &Path, more: &str) {
 }
 
 #[test]
-fn a_resumed_film_goes_on_as_the_flags_say() {
+fn resumed_film_follows_the_flags() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("film.exr");
     save_film(&path, "");

@@ -30,7 +30,7 @@ fn size(harness: &Harness<'_, Window>) -> [u32; 2] {
     harness.state().shown_document().size()
 }
 
-/// Draws frames for longer than a new size takes to be followed.
+/// Draws frames for longer than the picture takes to follow a new size.
 fn settle(harness: &mut Harness<'_, Window>) {
     let begin = Instant::now();
     while begin.elapsed() < Duration::from_millis(600) {

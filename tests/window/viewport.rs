@@ -137,7 +137,7 @@ fn escape_leaves_a_comparison_and_a_view() {
 }
 
 #[test]
-fn the_menu_of_a_right_click_means_what_is_there() {
+fn context_menu_acts_on_what_is_there() {
     let mut harness = open("--stage glass-schlick --size 64x36");
     until(&mut harness, "a picture", has_samples(1));
     let count = spheres(&harness).len();

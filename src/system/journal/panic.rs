@@ -50,7 +50,7 @@ pub fn write_report() {
     let mut paths = places.iter().flatten().map(|place| place.join(&name));
     match paths.find(|path| write_text(path, &text).is_ok()) {
         Some(path) => console::note(&format!(
-            "a report was written to {}: read it, then send it, with the scene file if you used one",
+            "a report is in {}: read it, then send it, with the scene file if you used one",
             path.display()
         )),
         None => console::note(&format!("no report could be written to any of {places:?}")),
