@@ -39,7 +39,7 @@ fn main() -> Result<()> {
 
 /// Renders `recipe` and writes `NAME.png` and `NAME.exr` to `directory`. Returns the film and its estimated error.
 pub fn render(recipe: &Recipe, directory: &Path) -> Result<(Film, ErrorEstimate)> {
-    // The job is the checked recipe. A sample depends on nothing but the job, its pixel and its index.
+    // The job is the checked recipe. A sample depends only on the job, its pixel and its index.
     let job = recipe.job()?;
     let mut film = job.new_film();
     let never = AtomicBool::new(false);

@@ -86,7 +86,7 @@ fn rendered_pictures_gain_and_the_estimate_holds() {
     assert!(within >= 30, "{within} of {total} estimates are within two standard deviations");
 }
 
-/// Noise is told from texture relative to the noise, however dark the picture is.
+/// Noise is distinguished from texture relative to the noise level, however dark the picture is.
 #[test]
 fn dark_scenes_gain_like_bright_ones() {
     let gain = |factor: f64| {

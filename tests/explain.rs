@@ -36,7 +36,7 @@ fn every_direction_follows_from_its_lobe() {
         let job = job(Recipe::find(scene).expect("built in"));
         for_paths(&job, 4, |_, steps| {
             for pair in steps.windows(2) {
-                let hit = pair[0].hit.expect("a path that goes on has hit");
+                let hit = pair[0].hit.expect("a path that continues has hit");
                 assert!(pair[0].direction.dot(hit.normal) <= 1e-9, "the normal faces the ray");
                 let next = pair[1].direction;
                 match pair[0].event {
@@ -59,7 +59,7 @@ fn every_direction_follows_from_its_lobe() {
                         }
                         seen[if refracts { 2 } else { 3 }] += 1;
                     }
-                    event => panic!("a path went on after {event:?}"),
+                    event => panic!("a path continued after {event:?}"),
                 }
             }
             seen[4] += usize::from(steps.last().is_some_and(|step| matches!(step.event, Event::Absorbed(_))));

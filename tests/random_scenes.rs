@@ -194,7 +194,7 @@ impl Checker {
         }
     }
 
-    /// What is wrong with a scene. Scenes that are refused or warned about are not wrong.
+    /// Finds faults in a scene's pictures. Scenes that are refused or warned about are not faults.
     fn check(&mut self, recipe: &Recipe) -> Result<(), String> {
         if recipe.job().is_err() {
             return Ok(());

@@ -45,7 +45,7 @@ fn small(case: &Case) -> Case {
     case
 }
 
-/// What is not right in these cases.
+/// The faults in these cases.
 fn wrong<'a>(mut suite: Suite, cases: impl Iterator<Item = &'a Case>) -> Vec<String> {
     let mut wrong = Vec::new();
     for case in cases {

@@ -9,7 +9,7 @@ use weekender::render_cpu::sphere::{
     BroadcastSphere, Nearest, Spheres, anchored_root, book_root, near_root, nearest_root,
 };
 
-/// Spheres that each ray is tested against: so many that loading the rays does not matter.
+/// Spheres that each ray is tested against: enough that loading the rays does not matter.
 const SPHERES: usize = 32;
 
 #[derive(Clone, Copy, Debug)]

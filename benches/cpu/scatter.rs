@@ -7,7 +7,7 @@ use weekender::render_cpu::lanes::{Float, Lanes, Mask, V3};
 use weekender::render_cpu::material::{Material, incidence_of, scatter};
 use weekender::stages::DielectricLaws;
 
-/// Bounces of each ray: so many that loading it does not matter.
+/// Bounces of each ray: enough that loading it does not matter.
 const BOUNCES: usize = 8;
 
 /// Mixed materials: each lane has one of its own.

@@ -9,7 +9,7 @@ use weekender::render_cpu::sphere::{NONE, Rays};
 /// Rays, directions or draws that a body goes through: few enough for the first cache.
 pub const COUNT: usize = 256;
 
-/// What is measured. It goes through [`COUNT`] items in packets and returns something that depends on all.
+/// A measured piece of code. It goes through [`COUNT`] items in packets and returns something that depends on all.
 pub trait Body {
     /// At the width of `l`.
     fn run<L: Lanes<Real = f32>>(&self, l: L) -> u32;

@@ -52,7 +52,7 @@ struct Options {
     adapter: Option<String>,
 }
 
-/// What the companion's table shows.
+/// The rows of the companion's table.
 #[derive(Serialize)]
 struct Comparison {
     about: String,

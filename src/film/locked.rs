@@ -86,7 +86,7 @@ mod tests {
         drop(run);
         let mut next = LockedFilm::new(&path).unwrap();
         next.save(&film(&[0..2]), None, &Description::new("r")).unwrap();
-        assert!(checkpoint::load(&path).unwrap().film == film(&[0..2]), "nobody said what must not be lost");
+        assert!(checkpoint::load(&path).unwrap().film == film(&[0..2]), "nothing was declared as held");
         drop(next);
         assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1, "the film alone");
     }

@@ -175,7 +175,7 @@ impl Film {
         &mut self.halves
     }
 
-    /// Records that every pixel now also holds the samples of `range`, of which `rejected` were left out.
+    /// Records that every pixel now also holds the samples of `range`, except for `rejected` ones that were left out.
     ///
     /// # Errors
     /// [`FilmError::Overlap`] if the film already had some of them, [`FilmError::Range`] if they reach beyond the

@@ -1,4 +1,4 @@
-//! What the programs on pictures share: text for people, JSON for programs, and an exit code.
+//! The output of the programs on pictures: text for people, JSON for programs, and an exit code.
 
 use crate::cli::terminal::{print_beside, write_figures};
 use crate::system::failure::{BAD_INPUT, FAILED};

@@ -25,7 +25,7 @@ pub struct Picture {
     pub steps: Option<Vec<[f64; 3]>>,
     /// The limit of an integer format, at and above which a channel is NaN; infinite for floats.
     pub limit: f64,
-    /// What reading the file left out or assumed.
+    /// Notes on what the reader of the file left out or assumed.
     pub notes: Vec<String>,
     pub film: Option<Arc<Film>>,
 }

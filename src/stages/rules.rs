@@ -63,7 +63,7 @@ impl Rules {
     }
 }
 
-/// What a ray contributes.
+/// The contribution of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Shading {

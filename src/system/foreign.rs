@@ -1,4 +1,4 @@
-//! What libraries print on standard error, kept apart from the program's own messages.
+//! Keeps what libraries print on standard error apart from the program's own messages.
 
 /// Runs `work`, during which graphics drivers may print messages of their own, such as "error: XDG_RUNTIME_DIR is
 /// invalid" on a server, which would look like the program's own. They go to the log instead.

@@ -169,8 +169,8 @@ fn in_bytes(text: &str, name: &str) -> Option<u64> {
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// What the process's control group and its ancestors still allow. In a container, the process's own group is the
-/// visible root, whatever its name outside.
+/// The memory that the process's control group and its ancestors still allow. In a container, the process's own group
+/// is the visible root, whatever its name outside.
 fn free_of_groups() -> Option<u64> {
     let groups = fs::read_to_string("/proc/self/cgroup").ok()?;
     let own = groups.lines().find_map(|line| line.strip_prefix("0::"))?;

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 use std::process::Command;
 
-/// What prevents using the page; `None` if nothing does.
+/// The reason why the page cannot be used; `None` if it can.
 pub fn obstacle() -> Option<String> {
     let lacks = |program: &str| Command::new(program).arg("--version").output().is_err();
     let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/web/node_modules/playwright-core");

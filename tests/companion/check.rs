@@ -93,7 +93,7 @@ fn a_reader_can_check_a_picture() {
                 let code: Vec<&str> = change.split('`').skip(1).step_by(2).collect();
                 assert_eq!(answer["code"], json!(code), "{name}");
                 let links = answer["links"].as_array().unwrap();
-                // The section on this page and in the book, and the picture of the mistake if there is one.
+                // The section on this page and in the book, and, for a mistake, its picture.
                 assert!(links.len() >= 2 || found["read"].is_null(), "{links:?}");
             }
             Err(message) => {

@@ -191,7 +191,7 @@ fn flags(input: &[u8]) -> usize {
     1 << 30
 }
 
-/// Corrects the checksum of a film's header, if there is one, so that the code after it is reached.
+/// Corrects the checksum of a film's header, so that the code after it is reached. `None` for other files.
 fn seal(input: &mut [u8]) -> Option<()> {
     let text_at = |name: &[u8]| {
         let start = input.windows(name.len()).position(|window| window == name)? + name.len();

@@ -7,7 +7,7 @@ use weekender::render_cpu::lanes::Single;
 use weekender::render_cpu::material::{hemisphere, incidence_of, incidence_of_sine2};
 use weekender::stages::DielectricLaws;
 
-/// Cosines of rays from either side, some of which rounding puts beyond 1.
+/// Cosines of rays from either side; rounding puts some of them beyond 1.
 #[test]
 fn incidence_and_stage_rules() {
     let Some(gpu) = Programs::open() else { return };

@@ -1,4 +1,4 @@
-//! The exact sum: cases 23 to 25, through the tracer. (For the film by itself, see tests/film.)
+//! The exact sum: cases 23 to 25, through the tracer. (For the film alone, see tests/film.)
 
 use crate::common::*;
 use glam::DVec3;

@@ -13,9 +13,9 @@ fn settings(sampler: SamplerKind, estimate_error: bool, seed: u32) -> RenderSett
     RenderSettings { sampler, estimate_error, seed, ..RenderSettings::default() }
 }
 
-/// Four numbers for one ray of a path, in units of `2^-32`. The first two select a direction, a point in the pixel, or
-/// a point on the lens if there is one. A dielectric uses the first to choose between reflection and refraction, since
-/// it needs no direction. With a lens, the last two select the point in the pixel.
+/// Four numbers for one ray of a path, in units of `2^-32`. The first two select a direction, a point in the pixel or,
+/// with a lens, a point on it. A dielectric uses the first to choose between reflection and refraction, since it needs
+/// no direction. With a lens, the last two select the point in the pixel.
 ///
 /// `pixel` is `x | y << 16`; `bounce` is 0 for the camera ray.
 pub fn numbers(settings: &RenderSettings, pixel: u32, index: u32, bounce: u32) -> [u32; 4] {

@@ -69,7 +69,7 @@ fn one_half_float_step_is_equal_but_two_differ() {
     let mut off = half.clone();
     off.pixels.iter_mut().flatten().for_each(|x| *x *= 1.0 + 4.0 / 2048.0);
     assert!(!compare_sides(&[float, off]).unwrap().is_equal());
-    // NaN and infinity in half floats are no limit of an integer.
+    // NaN and infinity in half floats are not the limit of an integer format.
     let mut hole = half.clone();
     hole.pixels[3][1] = f64::NAN;
     assert!(!compare_sides(&[half, hole]).unwrap().is_equal());

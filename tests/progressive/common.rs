@@ -41,7 +41,7 @@ pub struct Fake {
     pub waits_for_stop: bool,
     pub value: Box<dyn Fn(usize, u64) -> PixelSum + Send>,
     pub prepares: Option<Prepare>,
-    /// What a pass does instead.
+    /// A replacement for a pass.
     pub pass: Option<Pass>,
     /// Passes whose samples are held back until they are collected, as by a GPU.
     pub holds: usize,

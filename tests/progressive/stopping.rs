@@ -1,4 +1,4 @@
-//! What ends a render, pauses it, or starts another.
+//! Ending, pausing and replacing a render.
 
 use super::common::{
     CPU, FAILING, Fake, PATIENCE, expected, idle, job, other_cpu, scripted, settled, started, started_with,

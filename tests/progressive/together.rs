@@ -1,4 +1,4 @@
-//! Several renderers working on one film, of which some fail.
+//! Several renderers working on one film, where some fail.
 
 use super::common::{Fake, PATIENCE, expected, forgetful, job, scripted, spoiling};
 use std::ops::Range;

@@ -18,7 +18,7 @@ const PACKAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/web/node_modul
 /// Makes Chromium's software adapter an ordinary Vulkan adapter.
 const SWIFTSHADER: &str = "/usr/lib/chromium/vk_swiftshader_icd.json";
 
-/// What prevents this test; `None` if nothing does.
+/// The reason why this test cannot run; `None` if it can.
 fn obstacle() -> Option<String> {
     let cannot_run = |program: &str| {
         let ran = Command::new(program).arg("--version").output();

@@ -116,7 +116,7 @@ fn cameras_are_those_of_the_program() {
 /// Cases for each stage. The first has the stage's own settings.
 const CASES: usize = 60;
 
-/// A stage with a reader's settings: what the script is told, and the job that it should be.
+/// A stage with a reader's settings: the script's input, and the job that it should become.
 struct Case {
     stage: Stage,
     settings: Value,

@@ -72,7 +72,7 @@ fn figure(caption: &str, stages: &[Stage]) -> String {
     let panels: String = stages.iter().map(panel).collect();
     format!(
         "<figure class=\"figure\"><div class=\"panels\">{panels}</div><figcaption>{caption}</figcaption></figure>\n<p>{}</p>\n",
-        "The text goes on after the figure. ".repeat(12)
+        "The text continues after the figure. ".repeat(12)
     )
 }
 

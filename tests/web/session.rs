@@ -1,4 +1,4 @@
-//! What restarts after a change by the reader, run by node without a browser.
+//! Restarts after a change by the reader, run by node without a browser.
 
 use super::page::SCRIPT;
 use std::process::Command;

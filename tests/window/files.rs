@@ -142,7 +142,7 @@ fn enter_never_replaces_a_file() {
     assert_eq!(harness.state_mut().remembered_mut().recent[0], path);
 }
 
-/// What the window answers to a request to close it.
+/// The window's answer to a request to close it.
 fn close(harness: &mut Harness<'_, Window>) -> Vec<egui::ViewportCommand> {
     let root = harness.input_mut().viewports.get_mut(&egui::ViewportId::ROOT).unwrap();
     root.events.push(egui::ViewportEvent::Close);
@@ -185,7 +185,7 @@ fn closing_asks_while_a_save_renders() {
     assert!(image::open(&path).is_ok());
 }
 
-/// What a button of a message offers is what it does.
+/// A button in a message does what it offers.
 #[test]
 fn undo_offer_ends_with_the_next_change() {
     let mut harness = open("--stage metal --size 32x18 --device cpu");

@@ -22,7 +22,7 @@ fn camera(harness: &Harness<'_, Window>) -> Camera {
     harness.state().shown_document().camera
 }
 
-/// What is seen at a point of the screen.
+/// The point of the scene that is visible at a point of the screen.
 fn under(harness: &Harness<'_, Window>, at: Pos2) -> Option<DVec3> {
     let document = harness.state().shown_document();
     let along = (at - harness.state().picture_rect().min) / harness.state().picture_rect().size();

@@ -40,7 +40,7 @@ pub trait Ask {
     /// The place of the kept picture that hides the traced one.
     fn looked(&self) -> Option<usize>;
 
-    /// What the picture can be compared with.
+    /// The possible partners of a comparison.
     fn partners(&self) -> Vec<Partner>;
 
     /// What it is compared with, or would be.

@@ -18,7 +18,7 @@ fn page_down_walks_through_the_book() {
         assert!(seen.len() < 40, "{seen:?}");
     }
     assert_eq!(seen, Stage::walk().map(|stage| stage.id).collect::<Vec<_>>());
-    // The scene for measuring is none of them, but its neighbours are.
+    // The scene for measuring is not one of them, but its neighbours are.
     send(&mut harness, Command::Stage(Stage::find("three-spheres").unwrap()));
     harness.key_press(Key::PageUp);
     harness.run_steps(2);

@@ -1,4 +1,4 @@
-//! What the channels of a film file hold, and how sums become words and back.
+//! The channels of a film file, and the conversion of sums to words and back.
 
 use super::head::Head;
 use super::{DENOISED_LAYER, Film, PixelSum};
@@ -9,7 +9,7 @@ use exr::meta::attribute::ChannelList;
 use exr::meta::header::Header;
 use exr::prelude::{ChannelDescription, Compression, SampleType, Text, Vec2};
 
-/// What a channel contains.
+/// The content of a channel.
 #[derive(Clone, Copy)]
 pub(super) enum Plane {
     /// The picture.

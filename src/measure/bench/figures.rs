@@ -71,7 +71,7 @@ pub struct Row {
     pub ratio_to_baseline: Option<f64>,
     /// `1 / (MSE seconds)`; `None` if the error is unknown.
     pub efficiency: Option<f64>,
-    /// What its kernel leaves out.
+    /// The parts that its kernel leaves out.
     pub left_out: Vec<&'static str>,
     /// Why it was not measured.
     pub skipped: Option<String>,

@@ -1,4 +1,4 @@
-//! What the measurements show: curves, and the accuracy of error estimates.
+//! Evaluates the measurements: curves, and the accuracy of error estimates.
 
 use super::data::{Curve, Data, Measured, Run};
 use crate::numbers::statistics::fit::{Crossing, Point, PowerLaw, time_to};

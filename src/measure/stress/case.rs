@@ -6,12 +6,12 @@ use glam::DVec3;
 use std::fmt;
 use std::sync::Arc;
 
-/// What a family's cases share.
+/// A family of cases.
 #[derive(Clone, Copy, Debug)]
 pub struct Family {
     /// First part of the ids of its cases.
     pub id: &'static str,
-    /// What the family tests, as a heading.
+    /// The subject of its tests, as a heading.
     pub title: &'static str,
     /// What it teaches, in a sentence or two, if the window shows cases of it.
     pub lesson: Option<&'static str>,
@@ -61,7 +61,7 @@ pub struct Case {
     /// The family's id and a name within the family: `copies/110`.
     pub id: String,
     pub family: &'static Family,
-    /// What makes the scene hard, in a sentence.
+    /// Why the scene is hard, in a sentence.
     pub stiff: String,
     pub recipe: Recipe,
     /// Typical length near the eye, scene units; the distant spheres are a thousand times as far away.

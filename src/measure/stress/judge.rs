@@ -122,7 +122,7 @@ impl Verdict {
         }
     }
 
-    /// What is wrong; empty for [`Verdict::Right`].
+    /// The fault; empty for [`Verdict::Right`].
     pub fn reason(&self) -> &str {
         match self {
             Verdict::Right => "",

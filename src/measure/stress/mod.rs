@@ -53,7 +53,7 @@ pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
     })
 }
 
-/// The CPU levels, a GPU if there is one, and the `f64` reference.
+/// The CPU levels, the GPU if available, and the `f64` reference.
 fn tracers(levels: &[Isa], adapter: Option<&str>) -> Result<Vec<Candidate>> {
     let cpu = |isa: &Isa| {
         let options = CpuOptions { isa: Some(*isa), ..CpuOptions::default() };

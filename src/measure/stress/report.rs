@@ -21,7 +21,7 @@ pub struct CaseReport {
     pub id: String,
     /// The family's title.
     pub family: &'static str,
-    /// What makes it hard.
+    /// Why it is hard.
     pub stiff: String,
     /// The expected result, as in the table.
     pub expected: String,

@@ -181,7 +181,7 @@ impl Finding {
         answer.explanation = match self.named() {
             _ if self.right.misfit < NEARLY_RIGHT => format!("{likely}, and no fault shows"),
             Some(mistake) => format!("{likely}, perhaps with this mistake: {}", mistake.title),
-            None => format!("{likely}, but with differences that cannot be told from noise"),
+            None => format!("{likely}, but with differences that may be noise"),
         };
     }
 
@@ -197,7 +197,7 @@ impl Finding {
             let shown = spheres.iter().zip(ignored.iter()).filter(|(_, is_ignored)| !**is_ignored);
             let scene = &self.right.hypothesis.recipe.scene;
             evidence.push(format!(
-                "{} of the pixels were compared: {}; the others depend on where the small spheres are",
+                "{} of the pixels were compared: {}; the others depend on the placement of the small spheres",
                 percent(compared / ignored.len() as f64),
                 shares(shown.map(|(sphere, _)| name_of(scene, *sphere)))
             ));

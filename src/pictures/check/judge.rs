@@ -56,7 +56,7 @@ const ALIKE: f64 = 5e-6;
 /// Largest misfit at which a changed picture can be recognised; display values squared.
 const NEARLY: f64 = 3e-4;
 
-/// Fewest samples per pixel at which a fault can be told from noise.
+/// Minimum samples per pixel to distinguish a fault from noise.
 const SAMPLES_LEAST: f64 = 8.0;
 
 /// Stages judged when the stage is unknown.

@@ -32,7 +32,7 @@ pub struct Mine {
     pub format: &'static str,
     /// Damage that was repaired to read the picture.
     pub damages: Vec<Damage>,
-    /// What reading the picture left out or assumed.
+    /// Notes on what the reader of the file left out or assumed.
     pub notes: Vec<String>,
 }
 

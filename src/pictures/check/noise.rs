@@ -1,5 +1,5 @@
-//! What the noise of a picture reveals: its number of samples, whether something has altered the picture since, and
-//! whether all pixels share their random numbers.
+//! Analyses the noise of a picture: its number of samples, whether something has altered the picture since, and whether
+//! all pixels share their random numbers.
 
 use super::Mine;
 use super::hypothesis::{Compared, Hypothesis, Mistake, blocks_of, pixels_of};

@@ -47,7 +47,7 @@ pub struct Steps {
     pub fuzz: fn(&mut Random) -> DVec3,
     /// The direction from a matte surface: from the random vector, the normal and the point; `None` for the stage's.
     pub scatter: Option<fn(DVec3, DVec3, DVec3) -> DVec3>,
-    /// What a bounce off a surface of this albedo adds to the light, and the factor of what comes after it.
+    /// The light that a bounce off a surface of this albedo adds, and the factor of the light from later bounces.
     pub combine: fn(DVec3) -> [DVec3; 2],
     /// How many times a reflection subtracts the component along the normal: 2 in the book.
     pub reflects: f64,

@@ -55,7 +55,7 @@ impl Watched {
         }))
     }
 
-    /// What is new: the picture, possibly with only some of its rows, or why it cannot be read.
+    /// The changed picture, possibly with only some of its rows, or why it cannot be read; `None` if nothing is new.
     fn look(&mut self) -> Option<Result<Mine>> {
         let now = stamp(&self.path);
         let has_changed = now != self.seen.0;

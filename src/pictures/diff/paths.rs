@@ -114,8 +114,7 @@ impl Pair<'_> {
         ]
     }
 
-    /// What happens to a path after the ray at `index`, as a word that can follow "is"; `None` if the ray hits no
-    /// sphere.
+    /// The fate of a path after the ray at `index`, as a word that can follow "is"; `None` if the ray hits no sphere.
     fn departure(&self, path: &PathRecord, index: usize) -> Option<&'static str> {
         // The words need no random numbers, so any pixel and sample will do.
         match step(self.job, [0, 0], 0, path, index)?.event {

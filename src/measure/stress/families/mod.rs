@@ -70,8 +70,7 @@ pub static FAMILIES: [Family; 15] = [
         lesson: None,
         cases: glass::trapped,
     },
-    // What is right for one bounce must be right ten thousand times in a row, and a kernel that a driver cuts short must
-    // be noticed.
+    // A bounce must be right ten thousand times in a row, and a kernel that a driver cuts short must be noticed.
     Family { id: "depth", title: "Long paths and many samples", lesson: None, cases: glass::depths },
     Family {
         id: "lens",
