@@ -71,7 +71,7 @@ pub struct BenchScene {
 /// Scenes measured by default.
 const DEFAULT_SCENES: [&str; 2] = ["three-spheres", "book"];
 
-/// Default maximum of paths per run.
+/// Default maximum number of paths per run.
 const PATH_LIMIT: u64 = 75_000_000;
 const QUICK_PATH_LIMIT: u64 = 3_000_000;
 

@@ -86,7 +86,8 @@ impl DiffOptions {
 
     /// The two backends.
     ///
-    /// # Errors Unless two known names are given.
+    /// # Errors
+    /// Unless two known names are given.
     pub fn sides(&self) -> Result<[BackendChoice; 2]> {
         ensure!(
             self.adapter.is_none() || self.sides.iter().any(|name| name == "gpu"),

@@ -204,7 +204,7 @@ mod tests {
         let before = budget.paths();
         budget.learn(before, Duration::from_secs(1));
         assert_eq!(budget.paths(), before / 2);
-        // After a small dispatch that was too slow, the budget is half of that, not half of the old budget.
+        // If a small dispatch was too slow, the new budget is half of its size, not half of the old budget.
         budget.learn(before / 8, Duration::from_secs(1));
         assert_eq!(budget.paths(), before / 16);
     }

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{self, Duration};
 
-/// The longest gap between two readings that counts in full. Readings come every [`BEAT`].
+/// Longer gaps between two readings count as this much. Readings come every [`BEAT`].
 const LONGEST_GAP: Duration = Duration::from_secs(1);
 
 const BEAT: Duration = Duration::from_millis(100);

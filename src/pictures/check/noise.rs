@@ -153,7 +153,7 @@ fn has_palette(mine: &Mine, ours: &[[u8; 3]]) -> bool {
     found <= most && colours(ours) > times * found
 }
 
-/// How many pictures whose pixels share random numbers the reader's is compared with.
+/// Number of pictures with shared random numbers that the reader's is compared with.
 const REALISATIONS: u32 = 4;
 
 /// Largest excess over the realisations: more samples have less noise, so the steps of bytes show.

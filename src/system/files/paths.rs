@@ -83,7 +83,7 @@ pub fn state_directory() -> Option<PathBuf> {
 pub fn cache_directory() -> Option<PathBuf> {
     let [_, (variable, usual)] = USUAL;
     let own = own_directory(env::var_os(variable), home_directory(), usual)?;
-    // Windows has one directory for state and caches.
+    // On Windows, this is the directory for state, too.
     Some(if cfg!(windows) { own.join("cache") } else { own })
 }
 
