@@ -80,7 +80,7 @@ impl Mine {
         Ok(mine)
     }
 
-    /// Reads the rows of a file that is still being written; `None` if nothing can be shown yet, or the file is complete.
+    /// Reads the rows of a file that is still being written; `None` if it shows nothing yet or is complete.
     pub fn begun(path: &Path) -> Option<Mine> {
         let Incomplete { picture, .. } = read_picture(path, None).err()?.downcast().ok()?;
         let mut mine = Mine::of(*picture).ok()?;
