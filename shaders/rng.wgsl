@@ -65,9 +65,9 @@ fn sampler_key(seed: u32, half: u32, pixel: u32) -> u32 {
 fn numbers(seed: u32, pixel: u32, counter: u32, key: u32, bounce: u32, with_lens: bool) -> vec4u {
     if SAMPLER == SAMPLER_SOBOL {
         let index = laine_karras(counter, mix32(key + bounce - min(bounce, LAST_TOGETHER)));
-        let first = sobol_pair(index, bounce * REARRANGEMENT);
+        let first = sobol_pair(index, bounce * (bounce * REARRANGEMENT_SQUARE + REARRANGEMENT));
         if with_lens {
-            return vec4u(first, sobol_pair(index, LAST_TOGETHER * REARRANGEMENT));
+            return vec4u(first, sobol_pair(index, PIXEL_REARRANGEMENT));
         }
         return first.xyxy;
     }

@@ -1,7 +1,9 @@
 //! Numeric constants that host and shaders share.
 
 use crate::film::{FIXED_POINT_MAX, FIXED_POINT_SCALE, RADIANCE_LIMIT};
-use crate::kernel::sampling::{GOLDEN_RATIO, LAST_TOGETHER, REARRANGEMENT, sine_coefficients};
+use crate::kernel::sampling::{
+    GOLDEN_RATIO, LAST_TOGETHER, PIXEL_REARRANGEMENT, REARRANGEMENT, REARRANGEMENT_SQUARE, sine_coefficients,
+};
 use crate::stages::BOOK_T_MIN;
 use std::fmt::Write;
 
@@ -104,6 +106,8 @@ constants! {
     also
     GOLDEN_RATIO: u32,
     REARRANGEMENT: u32,
+    REARRANGEMENT_SQUARE: u32,
+    PIXEL_REARRANGEMENT: u32,
     LAST_TOGETHER: u32,
     BOOK_T_MIN: f64,
     FIXED_POINT_SCALE: f64,

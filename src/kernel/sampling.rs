@@ -31,12 +31,17 @@ pub fn mix32(mut x: u32) -> u32 {
     x ^ (x >> 16)
 }
 
-/// Even number that, times the bounce, rearranges the points of a path's rays: see `sobol_pair` of the tracers. Of 1,000
-/// random ones, it left the least error in the scenes three-spheres and book.
-pub const REARRANGEMENT: u32 = 0x6640_B2D8;
+/// What rearranges the points of a path's first rays, as a polynomial of the bounce (even, and 0 for the camera ray): see
+/// `sobol_pair` of the tracers. These constants leave the least error of 2,000 random ones in the scenes three-spheres and
+/// book.
+pub const REARRANGEMENT: u32 = 0xDA7B_DF80;
+pub const REARRANGEMENT_SQUARE: u32 = 0x7285_8868;
 
-/// The last bounce whose points share a shuffle with those of the camera ray. A point in the pixel, where the lens has the
-/// camera ray's pair, takes this one's rearrangement.
+/// What rearranges the points in a pixel when the camera ray's pair is used for the lens. It must be no small multiple of
+/// another rearrangement: bits of two numbers would be equal in all samples, and the picture wrong.
+pub const PIXEL_REARRANGEMENT: u32 = 0x4046_02D0;
+
+/// The last bounce whose points share a shuffle with those of the camera ray.
 pub const LAST_TOGETHER: u32 = 2;
 
 /// Coefficients of `sin(2 pi x) / x` in powers of `x^2`, for `|x| <= 1/4`. Minimax in relative error (Remez in

@@ -10,7 +10,9 @@
 
 use super::lanes::{Lanes, Unsigned};
 use crate::job::render::{RenderSettings, SamplerKind};
-use crate::kernel::sampling::{HalfKey, LAST_TOGETHER, REARRANGEMENT};
+use crate::kernel::sampling::{
+    HalfKey, LAST_TOGETHER, PIXEL_REARRANGEMENT, REARRANGEMENT, REARRANGEMENT_SQUARE,
+};
 
 /// Hashes 32 bits to 32 bits; a bijection: [`crate::kernel::sampling::mix32`].
 #[inline(always)]
@@ -101,9 +103,9 @@ pub fn numbers<L: Lanes>(
             let bounce = stream - key;
             let shared = stream - bounce.min(l.splat_u(LAST_TOGETHER));
             let index = laine_karras(l, counter, mix32(l, shared));
-            let first = sobol_pair(l, index, bounce * l.splat_u(REARRANGEMENT));
-            let pixel_rearrangement = l.splat_u(LAST_TOGETHER.wrapping_mul(REARRANGEMENT));
-            let second = if with_lens { sobol_pair(l, index, pixel_rearrangement) } else { first };
+            let factor = bounce * l.splat_u(REARRANGEMENT_SQUARE) + l.splat_u(REARRANGEMENT);
+            let first = sobol_pair(l, index, bounce * factor);
+            let second = if with_lens { sobol_pair(l, index, l.splat_u(PIXEL_REARRANGEMENT)) } else { first };
             [first, second]
         }
     }

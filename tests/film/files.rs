@@ -74,9 +74,9 @@ fn another_version_is_refused() {
     let whole = std::fs::read(&path).unwrap();
     let writer = concat!("Weekender ", env!("CARGO_PKG_VERSION")).to_owned();
     for (needle, offset, digit, layout, samples) in [
-        (&b"\nsample_version = 5"[..], 18, b'2', 4, 2),
-        (b"version = 4", 10, b'9', 9, 5),
-        (b"version = 4", 10, b'3', 3, 5),
+        (&b"\nsample_version = 6"[..], 18, b'2', 4, 2),
+        (b"version = 4", 10, b'9', 9, 6),
+        (b"version = 4", 10, b'3', 3, 6),
     ] {
         std::fs::write(&path, &whole).unwrap();
         spoil(&path, needle, offset, digit);
@@ -92,7 +92,7 @@ fn another_version_is_refused() {
     }
 }
 
-/// A film of layout 4 with samples of version 5, as they were first written, with two bands and both halves.
+/// A film of layout 4 with samples of version 6, as they were first written, with two bands and both halves.
 #[test]
 fn old_film_file_is_read() {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/film/data/layout-4.exr"));

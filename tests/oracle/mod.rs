@@ -1,6 +1,8 @@
 //! The numbers of a sample in plain scalar code: the oracle for all lane widths and the GPU.
 
-use weekender::kernel::sampling::{GOLDEN_RATIO, REARRANGEMENT, mix32, sine_coefficients};
+use weekender::kernel::sampling::{
+    GOLDEN_RATIO, PIXEL_REARRANGEMENT, REARRANGEMENT, REARRANGEMENT_SQUARE, mix32, sine_coefficients,
+};
 
 /// The key that separates the Sobol scramblings of pixels, halves and seeds.
 pub fn pixel_key(seed: u32, half: u32, pixel: u32) -> u32 {
@@ -36,12 +38,14 @@ pub fn pascal(u: u32) -> u32 {
 }
 
 /// The Sobol numbers of ray `bounce` of the sample with the reversed index `counter`. The first three rays share a
-/// shuffle of the index and differ by a rearrangement, as do the lens and the point in the pixel.
+/// shuffle of the index and differ by a rearrangement, as do the lens and the point in the pixel. Those of the second pair
+/// matter only for the camera ray.
 pub fn sobol_numbers(key: u32, counter: u32, bounce: u32) -> [u32; 4] {
     let stream = if bounce <= 2 { key } else { key.wrapping_add(bounce - 2) };
     let index = laine_karras(counter, mix32(stream));
-    let rearranged = |times: u32| index ^ index.wrapping_mul(times.wrapping_mul(REARRANGEMENT));
-    let [first, second] = [bounce, 2].map(rearranged);
+    let factor = bounce.wrapping_mul(REARRANGEMENT_SQUARE).wrapping_add(REARRANGEMENT);
+    let [first, second] =
+        [bounce.wrapping_mul(factor), PIXEL_REARRANGEMENT].map(|factor| index ^ index.wrapping_mul(factor));
     [first, pascal(first), second, pascal(second)]
 }
 

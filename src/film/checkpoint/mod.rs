@@ -38,7 +38,7 @@ pub const VERSION: u32 = 4;
 
 /// Version of the samples: of the random numbers and how they are used. Samples of different versions must not be
 /// mixed, so films of other versions are neither resumed nor merged.
-pub const SAMPLE_VERSION: u32 = 5;
+pub const SAMPLE_VERSION: u32 = 6;
 
 /// The first bytes of an OpenEXR file.
 pub(crate) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
