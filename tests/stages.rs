@@ -47,6 +47,14 @@ fn every_stage_can_be_rendered_shown_and_compared() {
     }
 }
 
+#[test]
+fn a_stage_is_found_by_its_section() {
+    assert_eq!((stage("11.4").id, stage("11.5").id), ("glass-schlick", "hollow-glass"));
+    let refused = |id| Stage::find(id).unwrap_err().to_string();
+    assert!(refused("12.1").contains("fov-wide, fov-narrow"), "{}", refused("12.1"));
+    assert!(refused("11.9").contains("--list"), "{}", refused("11.9"));
+}
+
 /// Equal jobs have equal samples, so a film may continue only if no part of its job differs.
 #[test]
 fn changing_any_part_changes_the_job() {

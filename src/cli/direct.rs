@@ -83,8 +83,8 @@ pub struct CheckOptions {
     /// for several, one line each
     #[arg(required = true, num_args = 1.., value_name = "PICTURE")]
     pub pictures: Vec<PathBuf>,
-    /// The stage of the book that they show [default: the one that each looks like]
-    #[arg(long, value_name = "ID", value_parser = Stage::find)]
+    /// The stage of the book that they show, by name or section [default: the one that each looks like]
+    #[arg(long, value_name = "STAGE", value_parser = Stage::find)]
     pub stage: Option<&'static Stage>,
     /// Check again after each change, even while the picture is being written, until Ctrl-C
     #[arg(long, conflicts_with = "out")]

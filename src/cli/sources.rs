@@ -25,8 +25,8 @@ pub(super) struct PictureFlags {
     /// A built-in scene, field:N for a field of N spheres, or a scene file [default: three-spheres]
     #[arg(long, value_name = "NAME|FILE.toml", value_hint = ValueHint::FilePath, conflicts_with = "stage")]
     pub scene: Option<OsString>,
-    /// A stage of the book; --list shows them
-    #[arg(long, value_name = "ID")]
+    /// A stage of the book, by name or section, such as glass-schlick or 11.4; --list shows them
+    #[arg(long, value_name = "STAGE")]
     pub stage: Option<String>,
     /// Width and height in pixels, each 1 to 16384 [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]

@@ -28,7 +28,7 @@ fn a_directory_keeps_its_plan() {
     let without_command =
         |text: &str| text.lines().filter(|line| !line.contains("\"command\"")).collect::<Vec<_>>().join("\n");
     assert_eq!(without_command(&now), without_command(&manifest));
-    assert!(render_part(at, "p", 0).contains("whole"));
+    assert!(render_part(at, "p", 0).contains("complete"));
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn changed_plan_or_other_version_is_refused() {
     let [good, good_scene] = [&manifest, &scene].map(|path| fs::read_to_string(path).unwrap());
     for (from, to, parts) in [
         (
-            "\"sample_version\": 5",
+            "\"sample_version\": 6",
             "\"sample_version\": 3",
             &["version 3", "version 5", "another directory"][..],
         ),
@@ -128,6 +128,6 @@ fn line_ends_and_byte_order_marks_do_not_matter() {
         fs::write(at.join(name), format!("\u{feff}{}", text.replace('\n', "\r\n"))).unwrap();
     }
     render_part(at, "p", 0);
-    assert!(render_part(at, "p", 0).contains("whole"));
+    assert!(render_part(at, "p", 0).contains("complete"));
     plan(at, "p", &["--samples", "4", "--parts", "2"]);
 }
