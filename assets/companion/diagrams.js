@@ -192,6 +192,23 @@ export const diagrams = {
       return [svg, `Vector ${chosen}: above, its components are in ${places.join(", ")}. Below, all three are in lane ${chosen}, where they can be multiplied and added at once.`];
     },
   },
+  streams: {
+    title: "One stream of random numbers, or numbers for each path",
+    size: [560, 228],
+    state: { path: 2, rays: 5 },
+    sliders: [slider("path", "Path", 1, 8, 1), slider("rays", "Its rays", 1, 6, 1)],
+    draw({ path, rays }) {
+      // Without the change, a path has from 1 to 4 rays.
+      const before = range(8, (i) => 1 + Math.floor(4 * random(i, 2))), lengths = before.map((n, i) => (i === path - 1 ? rays : n));
+      const starts = lengths.map((_, i) => lengths.slice(0, i).reduce((a, b) => a + b, 0)), isOther = rays !== before[path - 1];
+      const cell = (p, i, changes) => box([...p, 16, 18], i === path - 1 ? "q1 filled" : isOther && changes ? "q3 filled" : "edge");
+      const row = (place, changes) => lengths.map((n, i) => range(n, (k) => cell(at(place(i), 17 * k, [1, 0]), i, changes(i))).join("") + label(at(place(i), 1, [1, 34]), i + 1, i === path - 1 ? "q1" : isOther && changes(i) ? "q3" : "weak")).join("");
+      const later = isOther ? 8 - path : 0;
+      const svg = label([8, 20], "the book: one stream; each path takes the next numbers", "weak") + row((i) => [8 + 17 * starts[i], 32], (i) => i >= path) +
+        label([8, 112], "here: each path has its own, computed from pixel, sample and bounce", "weak") + row((i) => [8 + 136 * (i % 4), i < 4 ? 124 : 180], () => false);
+      return [svg, `Path ${path} has ${rays} ${rays === 1 ? "ray" : "rays"}${isOther ? ` instead of ${before[path - 1]}` : ", as before"}. With one stream, ${later} other ${later === 1 ? "path" : "paths"} get different numbers; with numbers of their own, none.`];
+    },
+  },
   viewport: {
     title: "The eye, the viewport and the ray of a pixel",
     size: [560, 300],
