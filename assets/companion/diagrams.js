@@ -142,6 +142,7 @@ export const diagrams = {
   hero: {
     title: "One path of light, from the eye to the sky",
     size: [720, 330],
+    narrow: [560, 520],
     hint: "Drag a ball, or the pixel that the ray goes through. Another seed sends the light another way.",
     state: { aim: [120, 156], blue: [420, 120], gold: [480, 235], red: [255, 225], seed: 3 },
     handles: [
@@ -149,7 +150,7 @@ export const diagrams = {
       handle("Golden ball", "gold", [190, 60, 330, 175]), handle("Red ball", "red", [190, 60, 330, 175]),
     ],
     sliders: [slider("seed", "Seed", 1, 30, 1)],
-    draw({ aim, blue, gold, red, seed }) {
+    draw({ aim, blue, gold, red, seed }, isNarrow) {
       const eye = [30, 165], row = clamp(Math.floor((aim[1] - 75) / 18), 0, 9), through = [120, 84 + 18 * row];
       const room = [
         { c: blue, r: 58, colour: [0.3, 0.5, 0.95], name: "blue ball" }, { c: gold, r: 48, colour: [0.95, 0.72, 0.3], isMetal: true, name: "golden mirror" },
@@ -163,12 +164,11 @@ export const diagrams = {
       const rays = steps.map(({ o, p, n }) => arrow(o, n ? p : at(o, 130, unit(minus(p, o))), "ink thick") + (n ? circle(p, 4, "ink solid") : ""));
       const cells = range(10, (i) => box([111, 75 + 18 * i, 18, 18], "cell", i === row ? `style="fill:${rgb(pixel)}"` : ""));
       const scene = `<svg x="0" y="0" width="560" height="330" viewBox="0 0 560 330">${[...bands, ...balls, ...cells, ...rays].join("")}${circle(eye, 7, "ink solid")}${label([14, 150], "eye", "ink")}${label([100, 66], "pixels", "ink")}</svg>`;
-      const factors = steps.map(({ ball, throughput: t }, i) => {
-        const y = 22 + 34 * i;
-        if (!ball) return swatch([576, y], 22, sky(last.sky)) + label([606, y + 16], "× the sky");
-        return swatch([576, y], 22, t) + label([606, y + 16], `× ${ball.name}`);
-      });
-      const svg = scene + factors.join("") + label([576, 14], "product", "weak") + swatch([576, 246], 70, pixel) + label([656, 285], "= pixel");
+      // Beside the scene, or below it in two columns.
+      const place = (i) => (isNarrow ? [8 + 200 * Math.floor(i / 3), 366 + 50 * (i % 3)] : [576, 22 + 34 * i]), side = isNarrow ? 30 : 22;
+      const factors = steps.map(({ ball, throughput: t }, i) => swatch(place(i), side, ball ? t : sky(last.sky)) + label(at(place(i), 1, [side + 8, 0.7 * side]), `× ${ball?.name ?? "the sky"}`));
+      const end = isNarrow ? [420, 366] : [576, 246];
+      const svg = scene + factors.join("") + label(at(place(0), 1, [0, -8]), "product", "weak") + swatch(end, 70, pixel) + label(at(end, 1, isNarrow ? [0, 92] : [80, 39]), "= pixel");
       const route = steps.map(({ ball }) => ball?.name ?? "sky").join(" → ");
       const numbers = (c) => c.map((x) => fixed(x)).join(", ");
       return [svg, `Seed ${seed}, pixel ${row + 1}: ${route}. ` + (isLit ? `Product (${numbers(throughput)}) × sky (${numbers(sky(last.sky))}) = pixel (${numbers(pixel)}).` : "Six rays, and still no sky: black.")];
@@ -177,17 +177,21 @@ export const diagrams = {
   rows: {
     title: "Vectors one after another, and rows of components",
     size: [560, 262],
+    narrow: [400, 330],
     state: { chosen: 2 },
     sliders: [slider("chosen", "Vector", 0, 7, 1)],
-    draw({ chosen }) {
+    draw({ chosen }, isNarrow) {
       const kinds = ["q1", "q2", "q3"], names = ["x", "y", "z"], cell = (x, y, k, i) =>
         box([x, y, 21, 24], i === chosen ? `${kinds[k]} filled` : "edge") + letter([x + 10.5, y + 17], `${names[k]}${"₀₁₂₃₄₅₆₇"[i]}`, kinds[k]);
-      const whole = range(24, (i) => cell(26 + 21 * i, 40, i % 3, Math.floor(i / 3)));
-      const rows = range(24, (i) => cell(110 + 21 * (i % 8), 138 + 32 * Math.floor(i / 8), Math.floor(i / 8), i % 8));
+      // A register's lanes, from left to right, and its place; on a phone, the three above are one below another.
+      const above = (register) => (isNarrow ? [26, 44 + 36 * register] : [26 + 168 * register, 40]), left = isNarrow ? 44 : 110, below = isNarrow ? 206 : 138;
+      const whole = range(24, (i) => cell(...at(above(Math.floor(i / 8)), 21 * (i % 8), [1, 0]), i % 3, Math.floor(i / 3)));
+      const rows = range(24, (i) => cell(left + 21 * (i % 8), below + 32 * Math.floor(i / 8), Math.floor(i / 8), i % 8));
       const bracket = (x, y) => curve([[x, y + 6], [x, y], [x + 168, y], [x + 168, y + 6]], "");
-      const svg = whole.join("") + range(3, (i) => bracket(26 + 168 * i, 30)).join("") + label([26, 20], "vectors one after another: a register holds parts of three", "weak") + rows.join("") +
-        label([26, 120], "rows of components: a register holds one component of eight vectors", "weak") + kinds.map((kind, k) => letter([96, 155 + 32 * k], names[k], kind)).join("") +
-        bracket(110, 132) + label([300, 155], "one instruction adds this row", "weak") + label([300, 187], "one this", "weak") + label([300, 219], "and one this", "weak");
+      const titles = ["vectors one after another: a register holds parts of three", "rows of components: a register holds one component of eight vectors"];
+      const title = (text, y) => (isNarrow ? text.split(": ") : [text]).map((line, i) => label([left - (isNarrow ? 40 : 84), y + 17 * i], line, "weak")).join("");
+      const svg = whole.join("") + range(3, (i) => bracket(...at(above(i), -(isNarrow ? 7 : 10), [0, 1]))).join("") + title(titles[0], isNarrow ? 14 : 20) + rows.join("") + title(titles[1], below - (isNarrow ? 33 : 18)) +
+        kinds.map((kind, k) => letter([left - 14, below + 17 + 32 * k], names[k], kind)).join("") + bracket(left, below - 6) + ["one instruction adds this row", "one this", "and one this"].map((text, k) => label([left + (isNarrow ? 176 : 190), below + 17 + 32 * k], isNarrow && k === 0 ? "one addition" : text, "weak")).join("");
       const places = range(3, (k) => { const i = 3 * chosen + k; return `lane ${i % 8} of register ${Math.floor(i / 8) + 1}`; });
       return [svg, `Vector ${chosen}: above, its components are in ${places.join(", ")}. Below, all three are in lane ${chosen}, where they can be multiplied and added at once.`];
     },
@@ -553,11 +557,12 @@ export const diagrams = {
   hierarchy: {
     title: "A packet in a hierarchy of boxes",
     size: [720, 290],
+    narrow: [600, 470],
     hint: "Drag the rays, and change their spread.",
     state: { o: [30, 150], aim: [330, 130], spread: 0.25 },
     handles: [handle("Origin of the rays", "o", [10, 20, 100, 250]), handle("Direction of the rays", "aim", [160, 20, 380, 250])],
     sliders: [slider("spread", "Spread of the rays", 0, 1, 0.05, fixed)],
-    draw({ o, aim, spread }) {
+    draw({ o, aim, spread }, isNarrow) {
       const middle = Math.atan2(aim[1] - o[1], aim[0] - o[0]);
       const rays = range(8, (i) => middle + spread * (i / 7 - 0.5)).map((a) => [Math.cos(a), Math.sin(a)]);
       const visits = [], tested = new Set(), nearest = rays.map(() => 560);
@@ -579,8 +584,12 @@ export const diagrams = {
         return frame + (place < 0 ? "" : label([x + 3 + 13 * (depth % 2), y + 10], place + 1, "q4 small")) + node.children.map((child) => drawn(child, depth + 1)).join("");
       };
       const ends = rays.map((d, i) => at(o, nearest[i], d));
-      const rows = visits.map(({ mask }, row) => (visits.length < 30 ? label([616, 33 + 8.5 * row], row + 1, "q4 small", "end") : "") + mask.map((isIn, i) => box([622 + 11 * i, 26 + 8.5 * row, 9, 6.5], isIn ? "q1 solid" : "edge")).join(""));
-      const svg = drawn(TREE) + SPHERES.map((ball) => circle(ball.c, ball.r, tested.has(ball) ? "q3" : "body")).join("") + ends.map((end) => line(o, end, "q1")).join("") + label([710, 18], "visited boxes", "weak", "end") + rows.join("");
+      // A row of squares for each box, or a column below the drawing.
+      const step = isNarrow ? Math.min(24, 584 / visits.length) : 8.5, isNumbered = visits.length < 30;
+      const square = (row, i) => (isNarrow ? [8 + step * row, 326 + 17 * i, 0.75 * step, 14] : [622 + 11 * i, 26 + step * row, 9, 6.5]);
+      const number = (row) => (isNarrow ? label([8 + step * (row + 0.37), 318], row + 1, "q4 small", "middle") : label([616, 33 + step * row], row + 1, "q4 small", "end"));
+      const rows = visits.map(({ mask }, row) => (isNumbered ? number(row) : "") + mask.map((isIn, i) => box(square(row, i), isIn ? "q1 solid" : "edge")).join(""));
+      const svg = drawn(TREE) + SPHERES.map((ball) => circle(ball.c, ball.r, tested.has(ball) ? "q3" : "body")).join("") + ends.map((end) => line(o, end, "q1")).join("") + (isNarrow ? label([8, 298], "visited boxes", "weak") : label([710, 18], "visited boxes", "weak", "end")) + rows.join("");
       const mean = visits.reduce((sum, { mask }) => sum + mask.filter(Boolean).length, 0) / (visits.length || 1);
       return [svg, `The packet opens ${visits.length} boxes, and on average ${mean.toFixed(1)} of its 8 rays are in one. It tests ${tested.size} of ${SPHERES.length} balls.`];
     },
@@ -604,7 +613,9 @@ function sliderRow({ key, label, min, max, step, show }, state, changed) {
   return row;
 }
 
-function start(figure, { state, hint = "", handles = [], sliders = [], draw }) {
+const isPhone = typeof matchMedia === "undefined" ? { matches: false } : matchMedia("(max-width: 40rem)");
+
+function start(figure, { size, narrow, state, hint = "", handles = [], sliders = [], draw }) {
   const svg = figure.querySelector("svg"), layer = svg.querySelector("g");
   const controls = document.createElement("div"), reading = document.createElement("p");
   controls.className = "diagram-controls";
@@ -640,7 +651,8 @@ function start(figure, { state, hint = "", handles = [], sliders = [], draw }) {
     };
   });
   function show() {
-    const [shapes, words] = draw(state);
+    const isNarrow = narrow && isPhone.matches, [shapes, words] = draw(state, isNarrow);
+    svg.setAttribute("viewBox", `0 0 ${(isNarrow ? narrow : size).join(" ")}`);
     layer.innerHTML = shapes;
     reading.textContent = words;
     knobs.forEach((knob) => knob());
@@ -648,6 +660,7 @@ function start(figure, { state, hint = "", handles = [], sliders = [], draw }) {
   const told = Object.assign(document.createElement("p"), { className: "hint", textContent: hint });
   controls.append(...(hint ? [told] : []), ...sliders.map((slider) => sliderRow(slider, state, show)), reading);
   figure.querySelector(".scroll").after(controls);
+  if (narrow) isPhone.addEventListener("change", show);
   show();
 }
 

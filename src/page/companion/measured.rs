@@ -191,19 +191,15 @@ fn error_table(kept: &Kept) -> Result<Markup> {
 /// The chart of the same data, in the page's colours.
 fn error_chart(kept: &Kept, uses: &mut Uses) -> Result<Markup> {
     let drawn = report::chart(&report_of(kept)?, TARGETS[0]);
-    let figure = chart::Figure {
-        // The caption already says both.
-        title: String::new(),
-        about: String::new(),
-        size: [640, UNTITLED_TOP + 470 * drawn.panels.len() as u32],
-        columns: 1,
-        panels: drawn.panels,
-    };
-    let about = "Error against time for each tracer; the table below has the times.";
-    let svg = chart::page_svg(&figure, about)?;
+    // For a window and for a phone. The caption already says title and machine.
+    let svgs = [[640, 470], [360, 330]].map(|[width, height]| {
+        let size = [width, UNTITLED_TOP + height * drawn.panels.len() as u32];
+        let figure = chart::Figure { title: String::new(), about: String::new(), size, columns: 1, panels: drawn.panels.clone() };
+        chart::page_svg(&figure, "Error against time for each tracer; the table below has the times.")
+    });
     Ok(html! {
         figure .chart id="chart-error" {
-            div .scroll tabindex="0" role="group" aria-label="Chart of error against time" { (PreEscaped(svg)) }
+            @for svg in svgs { (PreEscaped(svg?)) }
             (numbered(&html! {
                 "Error against time. Lower and further left is better; the dashed slope is half the error in four times the time. "
                 em { "cpu" } ": packets on all threads; " em { "scalar" } ": one lane on all threads; "

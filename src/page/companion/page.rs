@@ -103,6 +103,8 @@ fn cover() -> Markup {
                 "The book, chapter by chapter: every picture rendered by the program, every excerpt its real code, and \
                  every figure live in your browser. Then: lanes, threads and GPUs, measured."
             }
+            // The script fills it.
+            div .check-box {}
             figure .figure id="figure-cover" {
                 div .panels { (directive::panel(stage, None, None, Some(&Picture::small(stage)))) }
                 figcaption { "The book’s last picture. Press " em { "Run" } " and drag it: your own device then traces it, with the program’s shaders." }
