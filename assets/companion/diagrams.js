@@ -233,7 +233,7 @@ export const diagrams = {
       const basis = [["u", [0.9, 0, 0], "q4"], ["v", [0, 0.9, 0], "q5"], ["w", [0, 0, 0.2], "q2"]].map(([name, end, kind]) => arrow(O, place(end), `${kind} thick`) + vector(at(place(end), 1.0, name === "v" ? [0, -7] : name === "w" ? [-10, 4] : [11, 12]), name, kind));
       const far = place([2 * s[0], 2 * s[1], -2]);
       const svg = pane(0, 0, 16, 9, "pane") + grid.join("") + pane(i, j, i + 1, j + 1, "q3 filled") + line(O, place([0, 0, -1]), "thin") + line(S, along(S, far, 0.6), "q1 thin") + arrow(O, S, "q1 thick") +
-        basis.join("") + circle(O, 5, "solid") + vector(at(O, 1, [-6, 22]), "o") + vector(at(along(O, S, 0.55), 10, [0, -1]), "d", "q1") + vector(at(S, 1, [13, -9]), "s", "q3") +
+        basis.join("") + circle(O, 5, "solid") + vector(at(O, 1, [-6, 22]), "o") + vector(at(along(O, S, 0.55), 10, [0, -1]), "d", "q1") + vector(at(S, 1, [24, -14]), "s", "q3") +
         label(at(corner(16, 4.5), 1, [10, 4]), "2", "weak") + label(at(along(corner(0, 9), corner(16, 9), 0.5), 1, [6, 22]), "2 · 16/9", "weak", "middle") + label(at(along(O, place([0, 0, -1]), 0.42), 1, [0, 17]), "1", "weak", "middle");
       const length = Math.hypot(s[0], s[1], 1);
       return [svg, `16 by 9 pixels. Column i = ${i}, row j = ${j}: s = (${fixed(s[0])}, ${fixed(s[1])}), so d points to (${fixed(s[0])}, ${fixed(s[1])}, −1); with length 1 it climbs by ${fixed(s[1] / length)}.`];
@@ -361,7 +361,7 @@ export const diagrams = {
       const svg = circle(C, r, "body") + circle(C, q, "cavity") + line([10, 150], [550, 150], "thin") + line([C[0], 150 - q], [545, 150 - q], "thin") + circle(C, 3.5, "solid") + vector(at(C, 1, [0, 18]), "C") +
         line(C, at(C, r, unit([-0.5, 1])), "edge") + letter(at(at(C, 0.62 * r, unit([-0.5, 1])), 1, [-10, 2]), "r") + line(C, at(C, q, unit([0.5, 1])), "edge") + letter(at(at(C, 0.6 * q, unit([0.5, 1])), 1, [11, 2]), "q") +
         line([62, 150], [62, b[1]], "q4") + letter([52, (150 + b[1]) / 2 + 5], "b", "q4") + rays.map(([a, p], i) => (i + 1 === rays.length ? arrow(a, p, "q1 thick") : line(a, p, "q1 thick"))).join("") + (hits.length ? mark(hits[0], "θ") : "") + (atAir ? mark(atAir, "") : "") +
-        hits.map(({ p, isTotal }) => circle(p, 4, isTotal ? "q3 solid" : "solid")).join("") + label([545, 143 - q], "b = q", "weak", "end") + label([C[0], 150 - r - 8], "glass", "weak", "middle") + label([C[0], 168 - q], "air", "weak", "middle");
+        hits.map(({ p, isTotal }) => circle(p, 4, isTotal ? "q3 solid" : "solid")).join("") + label([545, 143 - q], "b = q", "weak", "end") + label([C[0], 145 + r], "glass", "weak", "middle") + label([C[0], 140 + q], "air", "weak", "middle");
       if (atAir) said = `, the air at ${degrees(Math.acos(atAir.cosine))} (critical ${index > 1 ? degrees(critical, 1) : "never"}): ${isTotal ? "total reflection" : "it goes through"}`;
       return [svg, `b = ${fixed(sine)} r: the ray meets the glass at θ = ${degrees(Math.asin(Math.min(1, Math.abs(sine))))}${said || ", and misses the air"}. Alone, the ball of air would be ${Math.abs(height) < q ? "hit" : "missed"}.`];
     },
@@ -384,7 +384,7 @@ export const diagrams = {
       const axis = (d, name, kind, length = 0.95) => arrow(E, place(plus(from, scaled(d, length))), `${kind} thick`) + vector(at(place(plus(from, scaled(d, length + 0.22))), 5, [0, 1]), name, kind);
       const floor = range(7, (i) => line(place([i - 5, -0.5, -1]), place([i - 5, -0.5, 2]), "fine")).concat(range(4, (i) => line(place([-5, -0.5, i - 1]), place([1, -0.5, i - 1]), "fine")));
       const svg = floor.join("") + ball(A, 31) + line(E, A, "thin") + polygon(pane, "pane") + pane.map((p) => line(E, p, "edge")).join("") + line(E, middle(1), "q3") + line(E, middle(-1), "q3") + angle(E, unit(minus(middle(1), E)), unit(minus(middle(-1), E)), 34, "", "q3") + label(at(along(middle(1), middle(-1), 0.5), 1, [8, 4]), "angle", "q3") +
-        axis(w, "w", "q2") + axis(u, "u", "q4") + axis(v, "v", "q5") + line(E, place(plus(from, [0, 1.1, 0])), "thin") + label(at(place(plus(from, [0, 1.18, 0])), 1, [4, -2]), "up", "weak") + circle(E, 5, "solid") + circle(A, 3.5, "solid") + label(at(A, 1, [8, 16]), "at") + label(at(E, 1, [-16, 6]), "from", "", "end");
+        axis(w, "w", "q2") + axis(u, "u", "q4") + axis(v, "v", "q5") + line(E, place(plus(from, [0, 1.1, 0])), "thin") + label(at(place(plus(from, [0, 1.18, 0])), 1, [4, -2]), "up", "weak") + circle(E, 5, "solid") + circle(A, 3.5, "solid") + label(at(A, 1, [8, 16]), "at") + label(at(E, 1, [-16, 22]), "from", "", "end");
       const show = (a) => `(${a.map((x) => fixed(x)).join(", ")})`;
       return [svg, `from − at = ${show(from)}. w = ${show(w)}, u = ${show(u)}, v = ${show(v)}. Half the viewport’s height is tan ${vfov / 2}° = ${fixed(half)}. u · w = ${fixed(dot3(u, w))}.`];
     },
@@ -418,8 +418,8 @@ export const diagrams = {
       const [F, Z, A] = [focus[0] - 50, z[0] - 50, 125 - a[1]], blur = A * Math.abs(1 - Z / F), unitPx = 70, onViewport = A * Math.abs(1 / F - 1 / Z) * unitPx;
       const starts = [-1, -0.5, 0, 0.5, 1].map((x) => [50, 125 + x * A]), rays = starts.map((o) => line(o, at(o, Math.max(Z, F) / F, minus([50 + F, 125], o)), "q1")).join("");
       const measure = (y, x, name, kind) => line([50, y], [x, y], `${kind} edge`) + line([x, y - 4], [x, y + 4], kind) + letter([(50 + x) / 2, y - 5], name, kind);
-      const svg = line([50, 125], [550, 125], "thin") + line([50 + unitPx, 60], [50 + unitPx, 190], "pane") + label([50 + unitPx, 52], "viewport", "weak", "middle") + line([focus[0], 24], [focus[0], 205], "q5 edge") + label([focus[0] + 14, 29], "plane in focus", "q5") +
-        rays + `<ellipse cx="50" cy="125" rx="${round(4 + A / 14)}" ry="${round(A)}" class="q4 filled"/>` + letter([30, 129 - A / 2], "Fτ", "q4", "end") + label([50, 145 + A], "lens", "q4", "middle") + line([z[0], 125 - blur], [z[0], 125 + blur], "q3 thick") + label([z[0] + 12, 120 - blur], "disk", "q3") +
+      const svg = line([50, 125], [550, 125], "thin") + line([50 + unitPx, 60], [50 + unitPx, 190], "pane") + label([50 + unitPx, 52], "viewport", "weak", "middle") + line([focus[0], 24], [focus[0], 205], "q5 edge") + label([focus[0] + 24, 29], "plane in focus", "q5") +
+        rays + `<ellipse cx="50" cy="125" rx="${round(4 + A / 14)}" ry="${round(A)}" class="q4 filled"/>` + letter([30, 129 - A / 2], "Fτ", "q4", "end") + label([36, 134 + A / 2], "lens", "q4", "end") + line([z[0], 125 - blur], [z[0], 125 + blur], "q3 thick") + label([z[0] + 12, 120 - blur], "disk", "q3") +
         line([50 + unitPx, 125 - onViewport], [50 + unitPx, 125 + onViewport], "q3 thick") + measure(225, focus[0], "F", "q5") + measure(250, z[0], "z", "q3") + measure(205, 50 + unitPx, "1", "");
       const share = Math.abs(1 - F / Z);
       return [svg, `τ = ${fixed(A / F)}, so the lens has radius Fτ = ${fixed(A / F)} F, and z = ${fixed(Z / F)} F. There the rays fill a disk of ${fixed(blur / A)} Fτ; on the viewport it is τ |1 − F/z| = ${fixed(share)} τ. ${blur < 1 ? "The point is in focus." : ""}`];
