@@ -75,7 +75,11 @@ pub fn draw(area: &Area, chart: &LineChart) -> Drawn {
     let named = ends.iter().filter(|(series, ..)| series.look == Look::Measured).count() as i32;
     let mut free = if is_narrow { rows.end - top - 17 * named } else { i32::MIN };
     for (series, (x, y), style) in ends {
-        let (x, y) = if is_narrow && series.look == Look::Measured { (column - 29, free) } else { (x - left, y - top) };
+        let (x, y) = if is_narrow && series.look == Look::Measured {
+            (column - 29, free)
+        } else {
+            (x - left, y - top)
+        };
         let text = (FONT, 14, &INK).into_text_style(area);
         if series.look == Look::Guide {
             let pos = Pos::new(HPos::Left, VPos::Bottom);

@@ -190,12 +190,14 @@ fn error_table(kept: &Kept) -> Result<Markup> {
 
 /// The chart of the same data, in the page's colours.
 fn error_chart(kept: &Kept, uses: &mut Uses) -> Result<Markup> {
-    let drawn = report::chart(&report_of(kept)?, TARGETS[0]);
-    // For a window and for a phone. The caption already says title and machine.
+    let mut drawn = report::chart(&report_of(kept)?, TARGETS[0]);
+    // The caption already says both.
+    (drawn.title, drawn.about, drawn.columns) = (String::new(), String::new(), 1);
+    let about = "Error against time for each tracer; the table below has the times.";
+    // For a window and for a phone.
     let svgs = [[640, 470], [360, 330]].map(|[width, height]| {
         let size = [width, UNTITLED_TOP + height * drawn.panels.len() as u32];
-        let figure = chart::Figure { title: String::new(), about: String::new(), size, columns: 1, panels: drawn.panels.clone() };
-        chart::page_svg(&figure, "Error against time for each tracer; the table below has the times.")
+        chart::page_svg(&chart::Figure { size, ..drawn.clone() }, about)
     });
     Ok(html! {
         figure .chart id="chart-error" {
