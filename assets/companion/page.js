@@ -1,5 +1,3 @@
-"use strict";
-
 // Colours: the system's, light or dark.
 (() => {
   const choice = document.createElement("fieldset");

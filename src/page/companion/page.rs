@@ -82,7 +82,7 @@ fn document(site: &Site, content: &Markup, live: &Markup) -> Result<Markup, Faul
                     (content)
                     (colophon())
                 }
-                script { (assets(&["companion/page.js"])?) }
+                script type="module" { (assets(&["companion/page.js"])?) }
                 script type="module" { (assets(&["companion/diagrams.js"])?) }
                 script type="application/json" id="live-data" { (live) }
                 script type="module" { (assets(&["web/scene.js", "web/film.js", "web/live.js"])?) }
