@@ -62,7 +62,7 @@ impl Picture {
 
     /// A smooth and small picture of a stage.
     pub fn small(stage: &'static Stage) -> Self {
-        Picture::new(stage, "denoised", (400, 64), Tracer::Denoised)
+        Picture::new(stage, "denoised", (NOISY_WIDTH, 64), Tracer::Denoised)
     }
 
     /// Its file and width, as candidates for a place have it.
