@@ -442,7 +442,7 @@ function dock(panel, link) {
   docked = { panel, place, link };
 }
 
-function start(given) {
+async function start(given) {
   addEventListener("keydown", (event) => event.key === "Escape" && undock());
   use(given);
   for (const root of document.querySelectorAll(".panels")) {
@@ -451,6 +451,8 @@ function start(given) {
       .map((panel) => (panel.live = new Panel(panel, data.stages[panel.dataset.stage])));
     panels.push(...made);
     if (root.querySelectorAll(".panel").length === 2) addWipe(root, made);
+    // The page answers between two figures.
+    await new Promise((passed) => setTimeout(passed));
   }
   if (!navigator.gpu && panels.length > 0) {
     const textContent = "In a browser with WebGPU, the pictures of this page can be turned and changed.";
