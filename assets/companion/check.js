@@ -25,15 +25,13 @@
 
   // The places: below the title, and at the mistakes of each chapter.
   const boxes = [];
-  const addBox = (before, text) => {
-    const box = make("div", { className: "check-box" });
+  const addBox = (box, text) => {
     const choose = button("Choose a file", () => {
       place = box;
       input.click();
     });
     const how = ["Drop the PPM or PNG that your ray tracer wrote here or anywhere on this page, or paste it. It does not leave your computer. ", choose];
     box.append(make("p", {}, make("strong", { textContent: `${text} ` }), ...(program ? how : missing())));
-    before.after(box);
     boxes.push(box);
   };
   const missing = () => [
@@ -41,11 +39,13 @@
     make("code", { textContent: "assets/package/cross.sh web" }), " builds it. Then make the page again. Or ", install(), " and run ",
     make("code", { textContent: "weekender check mine.ppm" }), ".",
   ];
-  addBox(document.querySelector(".cover .lead"), "Is your own picture right?");
+  addBox(document.querySelector(".cover .check-box"), "Is your own picture right?");
   for (const heading of program ? document.querySelectorAll("h3[id$='-what-a-mistake-looks-like']") : []) {
     let last = heading;
     while (last.nextElementSibling?.matches(".mistakes, .mistakes-hint")) last = last.nextElementSibling;
-    addBox(last, "Is yours right?");
+    const box = make("div", { className: "check-box" });
+    last.after(box);
+    addBox(box, "Is yours right?");
   }
 
   // The script is loaded when it is first needed. Pages from a disk cannot fetch, but they can load scripts.

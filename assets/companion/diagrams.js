@@ -142,6 +142,7 @@ export const diagrams = {
   hero: {
     title: "One path of light, from the eye to the sky",
     size: [720, 330],
+    narrow: [560, 520],
     hint: "Drag a ball, or the pixel that the ray goes through. Another seed sends the light another way.",
     state: { aim: [120, 156], blue: [420, 120], gold: [480, 235], red: [255, 225], seed: 3 },
     handles: [
@@ -149,7 +150,7 @@ export const diagrams = {
       handle("Golden ball", "gold", [190, 60, 330, 175]), handle("Red ball", "red", [190, 60, 330, 175]),
     ],
     sliders: [slider("seed", "Seed", 1, 30, 1)],
-    draw({ aim, blue, gold, red, seed }) {
+    draw({ aim, blue, gold, red, seed }, isNarrow) {
       const eye = [30, 165], row = clamp(Math.floor((aim[1] - 75) / 18), 0, 9), through = [120, 84 + 18 * row];
       const room = [
         { c: blue, r: 58, colour: [0.3, 0.5, 0.95], name: "blue ball" }, { c: gold, r: 48, colour: [0.95, 0.72, 0.3], isMetal: true, name: "golden mirror" },
@@ -163,12 +164,11 @@ export const diagrams = {
       const rays = steps.map(({ o, p, n }) => arrow(o, n ? p : at(o, 130, unit(minus(p, o))), "ink thick") + (n ? circle(p, 4, "ink solid") : ""));
       const cells = range(10, (i) => box([111, 75 + 18 * i, 18, 18], "cell", i === row ? `style="fill:${rgb(pixel)}"` : ""));
       const scene = `<svg x="0" y="0" width="560" height="330" viewBox="0 0 560 330">${[...bands, ...balls, ...cells, ...rays].join("")}${circle(eye, 7, "ink solid")}${label([14, 150], "eye", "ink")}${label([100, 66], "pixels", "ink")}</svg>`;
-      const factors = steps.map(({ ball, throughput: t }, i) => {
-        const y = 22 + 34 * i;
-        if (!ball) return swatch([576, y], 22, sky(last.sky)) + label([606, y + 16], "× the sky");
-        return swatch([576, y], 22, t) + label([606, y + 16], `× ${ball.name}`);
-      });
-      const svg = scene + factors.join("") + label([576, 14], "product", "weak") + swatch([576, 246], 70, pixel) + label([656, 285], "= pixel");
+      // Beside the scene, or below it in two columns.
+      const place = (i) => (isNarrow ? [8 + 200 * Math.floor(i / 3), 366 + 50 * (i % 3)] : [576, 22 + 34 * i]), side = isNarrow ? 30 : 22;
+      const factors = steps.map(({ ball, throughput: t }, i) => swatch(place(i), side, ball ? t : sky(last.sky)) + label(at(place(i), 1, [side + 8, 0.7 * side]), `× ${ball?.name ?? "the sky"}`));
+      const end = isNarrow ? [420, 366] : [576, 246];
+      const svg = scene + factors.join("") + label(at(place(0), 1, [0, -8]), "product", "weak") + swatch(end, 70, pixel) + label(at(end, 1, isNarrow ? [0, 92] : [80, 39]), "= pixel");
       const route = steps.map(({ ball }) => ball?.name ?? "sky").join(" → ");
       const numbers = (c) => c.map((x) => fixed(x)).join(", ");
       return [svg, `Seed ${seed}, pixel ${row + 1}: ${route}. ` + (isLit ? `Product (${numbers(throughput)}) × sky (${numbers(sky(last.sky))}) = pixel (${numbers(pixel)}).` : "Six rays, and still no sky: black.")];
@@ -177,19 +177,40 @@ export const diagrams = {
   rows: {
     title: "Vectors one after another, and rows of components",
     size: [560, 262],
+    narrow: [400, 330],
     state: { chosen: 2 },
     sliders: [slider("chosen", "Vector", 0, 7, 1)],
-    draw({ chosen }) {
+    draw({ chosen }, isNarrow) {
       const kinds = ["q1", "q2", "q3"], names = ["x", "y", "z"], cell = (x, y, k, i) =>
         box([x, y, 21, 24], i === chosen ? `${kinds[k]} filled` : "edge") + letter([x + 10.5, y + 17], `${names[k]}${"₀₁₂₃₄₅₆₇"[i]}`, kinds[k]);
-      const whole = range(24, (i) => cell(26 + 21 * i, 40, i % 3, Math.floor(i / 3)));
-      const rows = range(24, (i) => cell(110 + 21 * (i % 8), 138 + 32 * Math.floor(i / 8), Math.floor(i / 8), i % 8));
+      // A register's lanes, from left to right, and its place; on a phone, the three above are one below another.
+      const above = (register) => (isNarrow ? [26, 44 + 36 * register] : [26 + 168 * register, 40]), left = isNarrow ? 44 : 110, below = isNarrow ? 206 : 138;
+      const whole = range(24, (i) => cell(...at(above(Math.floor(i / 8)), 21 * (i % 8), [1, 0]), i % 3, Math.floor(i / 3)));
+      const rows = range(24, (i) => cell(left + 21 * (i % 8), below + 32 * Math.floor(i / 8), Math.floor(i / 8), i % 8));
       const bracket = (x, y) => curve([[x, y + 6], [x, y], [x + 168, y], [x + 168, y + 6]], "");
-      const svg = whole.join("") + range(3, (i) => bracket(26 + 168 * i, 30)).join("") + label([26, 20], "vectors one after another: a register holds parts of three", "weak") + rows.join("") +
-        label([26, 120], "rows of components: a register holds one component of eight vectors", "weak") + kinds.map((kind, k) => letter([96, 155 + 32 * k], names[k], kind)).join("") +
-        bracket(110, 132) + label([300, 155], "one instruction adds this row", "weak") + label([300, 187], "one this", "weak") + label([300, 219], "and one this", "weak");
+      const titles = ["vectors one after another: a register holds parts of three", "rows of components: a register holds one component of eight vectors"];
+      const title = (text, y) => (isNarrow ? text.split(": ") : [text]).map((line, i) => label([left - (isNarrow ? 40 : 84), y + 17 * i], line, "weak")).join("");
+      const svg = whole.join("") + range(3, (i) => bracket(...at(above(i), -(isNarrow ? 7 : 10), [0, 1]))).join("") + title(titles[0], isNarrow ? 14 : 20) + rows.join("") + title(titles[1], below - (isNarrow ? 33 : 18)) +
+        kinds.map((kind, k) => letter([left - 14, below + 17 + 32 * k], names[k], kind)).join("") + bracket(left, below - 6) + ["one instruction adds this row", "one this", "and one this"].map((text, k) => label([left + (isNarrow ? 176 : 190), below + 17 + 32 * k], isNarrow && k === 0 ? "one addition" : text, "weak")).join("");
       const places = range(3, (k) => { const i = 3 * chosen + k; return `lane ${i % 8} of register ${Math.floor(i / 8) + 1}`; });
       return [svg, `Vector ${chosen}: above, its components are in ${places.join(", ")}. Below, all three are in lane ${chosen}, where they can be multiplied and added at once.`];
+    },
+  },
+  streams: {
+    title: "One stream of random numbers, or numbers for each path",
+    size: [560, 228],
+    state: { path: 2, rays: 5 },
+    sliders: [slider("path", "Path", 1, 8, 1), slider("rays", "Its rays", 1, 6, 1)],
+    draw({ path, rays }) {
+      // Without the change, a path has from 1 to 4 rays.
+      const before = range(8, (i) => 1 + Math.floor(4 * random(i, 2))), lengths = before.map((n, i) => (i === path - 1 ? rays : n));
+      const starts = lengths.map((_, i) => lengths.slice(0, i).reduce((a, b) => a + b, 0)), isOther = rays !== before[path - 1];
+      const cell = (p, i, changes) => box([...p, 16, 18], i === path - 1 ? "q1 filled" : isOther && changes ? "q3 filled" : "edge");
+      const row = (place, changes) => lengths.map((n, i) => range(n, (k) => cell(at(place(i), 17 * k, [1, 0]), i, changes(i))).join("") + label(at(place(i), 1, [1, 34]), i + 1, i === path - 1 ? "q1" : isOther && changes(i) ? "q3" : "weak")).join("");
+      const later = isOther ? 8 - path : 0;
+      const svg = label([8, 20], "the book: one stream; each path takes the next numbers", "weak") + row((i) => [8 + 17 * starts[i], 32], (i) => i >= path) +
+        label([8, 112], "here: each path has its own, computed from pixel, sample and bounce", "weak") + row((i) => [8 + 136 * (i % 4), i < 4 ? 124 : 180], () => false);
+      return [svg, `Path ${path} has ${rays} ${rays === 1 ? "ray" : "rays"}${isOther ? ` instead of ${before[path - 1]}` : ", as before"}. With one stream, ${later} other ${later === 1 ? "path" : "paths"} get different numbers; with numbers of their own, none.`];
     },
   },
   viewport: {
@@ -212,7 +233,7 @@ export const diagrams = {
       const basis = [["u", [0.9, 0, 0], "q4"], ["v", [0, 0.9, 0], "q5"], ["w", [0, 0, 0.2], "q2"]].map(([name, end, kind]) => arrow(O, place(end), `${kind} thick`) + vector(at(place(end), 1.0, name === "v" ? [0, -7] : name === "w" ? [-10, 4] : [11, 12]), name, kind));
       const far = place([2 * s[0], 2 * s[1], -2]);
       const svg = pane(0, 0, 16, 9, "pane") + grid.join("") + pane(i, j, i + 1, j + 1, "q3 filled") + line(O, place([0, 0, -1]), "thin") + line(S, along(S, far, 0.6), "q1 thin") + arrow(O, S, "q1 thick") +
-        basis.join("") + circle(O, 5, "solid") + vector(at(O, 1, [-6, 22]), "o") + vector(at(along(O, S, 0.55), 10, [0, -1]), "d", "q1") + vector(at(S, 1, [13, -9]), "s", "q3") +
+        basis.join("") + circle(O, 5, "solid") + vector(at(O, 1, [-6, 22]), "o") + vector(at(along(O, S, 0.55), 10, [0, -1]), "d", "q1") + vector(at(S, 1, [24, -14]), "s", "q3") +
         label(at(corner(16, 4.5), 1, [10, 4]), "2", "weak") + label(at(along(corner(0, 9), corner(16, 9), 0.5), 1, [6, 22]), "2 · 16/9", "weak", "middle") + label(at(along(O, place([0, 0, -1]), 0.42), 1, [0, 17]), "1", "weak", "middle");
       const length = Math.hypot(s[0], s[1], 1);
       return [svg, `16 by 9 pixels. Column i = ${i}, row j = ${j}: s = (${fixed(s[0])}, ${fixed(s[1])}), so d points to (${fixed(s[0])}, ${fixed(s[1])}, −1); with length 1 it climbs by ${fixed(s[1] / length)}.`];
@@ -340,7 +361,7 @@ export const diagrams = {
       const svg = circle(C, r, "body") + circle(C, q, "cavity") + line([10, 150], [550, 150], "thin") + line([C[0], 150 - q], [545, 150 - q], "thin") + circle(C, 3.5, "solid") + vector(at(C, 1, [0, 18]), "C") +
         line(C, at(C, r, unit([-0.5, 1])), "edge") + letter(at(at(C, 0.62 * r, unit([-0.5, 1])), 1, [-10, 2]), "r") + line(C, at(C, q, unit([0.5, 1])), "edge") + letter(at(at(C, 0.6 * q, unit([0.5, 1])), 1, [11, 2]), "q") +
         line([62, 150], [62, b[1]], "q4") + letter([52, (150 + b[1]) / 2 + 5], "b", "q4") + rays.map(([a, p], i) => (i + 1 === rays.length ? arrow(a, p, "q1 thick") : line(a, p, "q1 thick"))).join("") + (hits.length ? mark(hits[0], "θ") : "") + (atAir ? mark(atAir, "") : "") +
-        hits.map(({ p, isTotal }) => circle(p, 4, isTotal ? "q3 solid" : "solid")).join("") + label([545, 143 - q], "b = q", "weak", "end") + label([C[0], 150 - r - 8], "glass", "weak", "middle") + label([C[0], 168 - q], "air", "weak", "middle");
+        hits.map(({ p, isTotal }) => circle(p, 4, isTotal ? "q3 solid" : "solid")).join("") + label([545, 143 - q], "b = q", "weak", "end") + label([C[0], 145 + r], "glass", "weak", "middle") + label([C[0], 140 + q], "air", "weak", "middle");
       if (atAir) said = `, the air at ${degrees(Math.acos(atAir.cosine))} (critical ${index > 1 ? degrees(critical, 1) : "never"}): ${isTotal ? "total reflection" : "it goes through"}`;
       return [svg, `b = ${fixed(sine)} r: the ray meets the glass at θ = ${degrees(Math.asin(Math.min(1, Math.abs(sine))))}${said || ", and misses the air"}. Alone, the ball of air would be ${Math.abs(height) < q ? "hit" : "missed"}.`];
     },
@@ -363,7 +384,7 @@ export const diagrams = {
       const axis = (d, name, kind, length = 0.95) => arrow(E, place(plus(from, scaled(d, length))), `${kind} thick`) + vector(at(place(plus(from, scaled(d, length + 0.22))), 5, [0, 1]), name, kind);
       const floor = range(7, (i) => line(place([i - 5, -0.5, -1]), place([i - 5, -0.5, 2]), "fine")).concat(range(4, (i) => line(place([-5, -0.5, i - 1]), place([1, -0.5, i - 1]), "fine")));
       const svg = floor.join("") + ball(A, 31) + line(E, A, "thin") + polygon(pane, "pane") + pane.map((p) => line(E, p, "edge")).join("") + line(E, middle(1), "q3") + line(E, middle(-1), "q3") + angle(E, unit(minus(middle(1), E)), unit(minus(middle(-1), E)), 34, "", "q3") + label(at(along(middle(1), middle(-1), 0.5), 1, [8, 4]), "angle", "q3") +
-        axis(w, "w", "q2") + axis(u, "u", "q4") + axis(v, "v", "q5") + line(E, place(plus(from, [0, 1.1, 0])), "thin") + label(at(place(plus(from, [0, 1.18, 0])), 1, [4, -2]), "up", "weak") + circle(E, 5, "solid") + circle(A, 3.5, "solid") + label(at(A, 1, [8, 16]), "at") + label(at(E, 1, [-16, 6]), "from", "", "end");
+        axis(w, "w", "q2") + axis(u, "u", "q4") + axis(v, "v", "q5") + line(E, place(plus(from, [0, 1.1, 0])), "thin") + label(at(place(plus(from, [0, 1.18, 0])), 1, [4, -2]), "up", "weak") + circle(E, 5, "solid") + circle(A, 3.5, "solid") + label(at(A, 1, [8, 16]), "at") + label(at(E, 1, [-16, 22]), "from", "", "end");
       const show = (a) => `(${a.map((x) => fixed(x)).join(", ")})`;
       return [svg, `from − at = ${show(from)}. w = ${show(w)}, u = ${show(u)}, v = ${show(v)}. Half the viewport’s height is tan ${vfov / 2}° = ${fixed(half)}. u · w = ${fixed(dot3(u, w))}.`];
     },
@@ -397,8 +418,8 @@ export const diagrams = {
       const [F, Z, A] = [focus[0] - 50, z[0] - 50, 125 - a[1]], blur = A * Math.abs(1 - Z / F), unitPx = 70, onViewport = A * Math.abs(1 / F - 1 / Z) * unitPx;
       const starts = [-1, -0.5, 0, 0.5, 1].map((x) => [50, 125 + x * A]), rays = starts.map((o) => line(o, at(o, Math.max(Z, F) / F, minus([50 + F, 125], o)), "q1")).join("");
       const measure = (y, x, name, kind) => line([50, y], [x, y], `${kind} edge`) + line([x, y - 4], [x, y + 4], kind) + letter([(50 + x) / 2, y - 5], name, kind);
-      const svg = line([50, 125], [550, 125], "thin") + line([50 + unitPx, 60], [50 + unitPx, 190], "pane") + label([50 + unitPx, 52], "viewport", "weak", "middle") + line([focus[0], 24], [focus[0], 205], "q5 edge") + label([focus[0] + 14, 29], "plane in focus", "q5") +
-        rays + `<ellipse cx="50" cy="125" rx="${round(4 + A / 14)}" ry="${round(A)}" class="q4 filled"/>` + letter([30, 129 - A / 2], "Fτ", "q4", "end") + label([50, 145 + A], "lens", "q4", "middle") + line([z[0], 125 - blur], [z[0], 125 + blur], "q3 thick") + label([z[0] + 12, 120 - blur], "disk", "q3") +
+      const svg = line([50, 125], [550, 125], "thin") + line([50 + unitPx, 60], [50 + unitPx, 190], "pane") + label([50 + unitPx, 52], "viewport", "weak", "middle") + line([focus[0], 24], [focus[0], 205], "q5 edge") + label([focus[0] + 24, 29], "plane in focus", "q5") +
+        rays + `<ellipse cx="50" cy="125" rx="${round(4 + A / 14)}" ry="${round(A)}" class="q4 filled"/>` + letter([30, 129 - A / 2], "Fτ", "q4", "end") + label([36, 134 + A / 2], "lens", "q4", "end") + line([z[0], 125 - blur], [z[0], 125 + blur], "q3 thick") + label([z[0] + 12, 120 - blur], "disk", "q3") +
         line([50 + unitPx, 125 - onViewport], [50 + unitPx, 125 + onViewport], "q3 thick") + measure(225, focus[0], "F", "q5") + measure(250, z[0], "z", "q3") + measure(205, 50 + unitPx, "1", "");
       const share = Math.abs(1 - F / Z);
       return [svg, `τ = ${fixed(A / F)}, so the lens has radius Fτ = ${fixed(A / F)} F, and z = ${fixed(Z / F)} F. There the rays fill a disk of ${fixed(blur / A)} Fτ; on the viewport it is τ |1 − F/z| = ${fixed(share)} τ. ${blur < 1 ? "The point is in focus." : ""}`];
@@ -536,11 +557,12 @@ export const diagrams = {
   hierarchy: {
     title: "A packet in a hierarchy of boxes",
     size: [720, 290],
+    narrow: [600, 470],
     hint: "Drag the rays, and change their spread.",
     state: { o: [30, 150], aim: [330, 130], spread: 0.25 },
     handles: [handle("Origin of the rays", "o", [10, 20, 100, 250]), handle("Direction of the rays", "aim", [160, 20, 380, 250])],
     sliders: [slider("spread", "Spread of the rays", 0, 1, 0.05, fixed)],
-    draw({ o, aim, spread }) {
+    draw({ o, aim, spread }, isNarrow) {
       const middle = Math.atan2(aim[1] - o[1], aim[0] - o[0]);
       const rays = range(8, (i) => middle + spread * (i / 7 - 0.5)).map((a) => [Math.cos(a), Math.sin(a)]);
       const visits = [], tested = new Set(), nearest = rays.map(() => 560);
@@ -562,8 +584,12 @@ export const diagrams = {
         return frame + (place < 0 ? "" : label([x + 3 + 13 * (depth % 2), y + 10], place + 1, "q4 small")) + node.children.map((child) => drawn(child, depth + 1)).join("");
       };
       const ends = rays.map((d, i) => at(o, nearest[i], d));
-      const rows = visits.map(({ mask }, row) => (visits.length < 30 ? label([616, 33 + 8.5 * row], row + 1, "q4 small", "end") : "") + mask.map((isIn, i) => box([622 + 11 * i, 26 + 8.5 * row, 9, 6.5], isIn ? "q1 solid" : "edge")).join(""));
-      const svg = drawn(TREE) + SPHERES.map((ball) => circle(ball.c, ball.r, tested.has(ball) ? "q3" : "body")).join("") + ends.map((end) => line(o, end, "q1")).join("") + label([710, 18], "visited boxes", "weak", "end") + rows.join("");
+      // A row of squares for each box, or a column below the drawing.
+      const step = isNarrow ? Math.min(24, 584 / visits.length) : 8.5, isNumbered = visits.length < 30;
+      const square = (row, i) => (isNarrow ? [8 + step * row, 326 + 17 * i, 0.75 * step, 14] : [622 + 11 * i, 26 + step * row, 9, 6.5]);
+      const number = (row) => (isNarrow ? label([8 + step * (row + 0.37), 318], row + 1, "q4 small", "middle") : label([616, 33 + step * row], row + 1, "q4 small", "end"));
+      const rows = visits.map(({ mask }, row) => (isNumbered ? number(row) : "") + mask.map((isIn, i) => box(square(row, i), isIn ? "q1 solid" : "edge")).join(""));
+      const svg = drawn(TREE) + SPHERES.map((ball) => circle(ball.c, ball.r, tested.has(ball) ? "q3" : "body")).join("") + ends.map((end) => line(o, end, "q1")).join("") + (isNarrow ? label([8, 298], "visited boxes", "weak") : label([710, 18], "visited boxes", "weak", "end")) + rows.join("");
       const mean = visits.reduce((sum, { mask }) => sum + mask.filter(Boolean).length, 0) / (visits.length || 1);
       return [svg, `The packet opens ${visits.length} boxes, and on average ${mean.toFixed(1)} of its 8 rays are in one. It tests ${tested.size} of ${SPHERES.length} balls.`];
     },
@@ -587,7 +613,9 @@ function sliderRow({ key, label, min, max, step, show }, state, changed) {
   return row;
 }
 
-function start(figure, { state, hint = "", handles = [], sliders = [], draw }) {
+const isPhone = typeof matchMedia === "undefined" ? { matches: false } : matchMedia("(max-width: 40rem)");
+
+function start(figure, { size, narrow, state, hint = "", handles = [], sliders = [], draw }) {
   const svg = figure.querySelector("svg"), layer = svg.querySelector("g");
   const controls = document.createElement("div"), reading = document.createElement("p");
   controls.className = "diagram-controls";
@@ -623,7 +651,8 @@ function start(figure, { state, hint = "", handles = [], sliders = [], draw }) {
     };
   });
   function show() {
-    const [shapes, words] = draw(state);
+    const isNarrow = narrow && isPhone.matches, [shapes, words] = draw(state, isNarrow);
+    svg.setAttribute("viewBox", `0 0 ${(isNarrow ? narrow : size).join(" ")}`);
     layer.innerHTML = shapes;
     reading.textContent = words;
     knobs.forEach((knob) => knob());
@@ -631,6 +660,7 @@ function start(figure, { state, hint = "", handles = [], sliders = [], draw }) {
   const told = Object.assign(document.createElement("p"), { className: "hint", textContent: hint });
   controls.append(...(hint ? [told] : []), ...sliders.map((slider) => sliderRow(slider, state, show)), reading);
   figure.querySelector(".scroll").after(controls);
+  if (narrow) isPhone.addEventListener("change", show);
   show();
 }
 

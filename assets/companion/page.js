@@ -1,5 +1,3 @@
-"use strict";
-
 // Colours: the system's, light or dark.
 (() => {
   const choice = document.createElement("fieldset");
@@ -263,10 +261,9 @@
 for (const list of document.querySelectorAll(".mistakes")) {
   const [right, ...wrong] = list.querySelectorAll("img");
   if (!right.alt.includes("As it should be")) continue;
-  for (const picture of wrong) {
-    const shown = Object.assign(right.cloneNode(), { className: "right", alt: "" });
-    picture.after(shown);
-  }
+  // A copy is loaded at once, so it is made when it is needed.
+  const copy = () => wrong.forEach((picture) => picture.after(Object.assign(right.cloneNode(), { className: "right", alt: "" })));
+  list.addEventListener("pointerover", copy, { once: true });
   const textContent = "Point at a wrong picture, or press it, to see the right one in its place.";
   list.after(Object.assign(document.createElement("p"), { className: "mistakes-hint", textContent }));
 }

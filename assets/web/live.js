@@ -150,11 +150,13 @@ function toggle(textContent, onclick) {
   return button;
 }
 
-// Puts a panel's picture into a frame, where others can lie over it.
+// A panel's picture and its frame, where others can lie over it. A picture that is moved into a frame is painted again.
 function framed(root) {
-  const still = root.querySelector("img"), frame = element("div", { className: "live-frame" });
-  still.replaceWith(frame);
-  frame.append(still);
+  const still = root.querySelector("img"), found = still.closest(".live-frame"), frame = found ?? element("div", { className: "live-frame" });
+  if (!found) {
+    still.replaceWith(frame);
+    frame.append(still);
+  }
   return [still, frame];
 }
 
@@ -440,15 +442,17 @@ function dock(panel, link) {
   docked = { panel, place, link };
 }
 
-function start() {
+async function start(given) {
   addEventListener("keydown", (event) => event.key === "Escape" && undock());
-  use(JSON.parse(document.getElementById("live-data").textContent));
+  use(given);
   for (const root of document.querySelectorAll(".panels")) {
     const made = [...root.querySelectorAll(".panel[data-stage]")]
       .filter((panel) => data.stages[panel.dataset.stage])
       .map((panel) => (panel.live = new Panel(panel, data.stages[panel.dataset.stage])));
     panels.push(...made);
     if (root.querySelectorAll(".panel").length === 2) addWipe(root, made);
+    // The page answers between two figures.
+    await new Promise((passed) => setTimeout(passed));
   }
   if (!navigator.gpu && panels.length > 0) {
     const textContent = "In a browser with WebGPU, the pictures of this page can be turned and changed.";
@@ -466,4 +470,19 @@ function start() {
   document.addEventListener("visibilitychange", () => panels.forEach((panel) => panel.session?.wake()));
 }
 
-if (typeof document !== "undefined") start();
+// What the first screen does not need may be in a file of its own.
+function load() {
+  const onload = () => {
+    const { fonts, live } = globalThis.later;
+    document.head.append(element("style", { textContent: fonts }));
+    start(live);
+  };
+  document.head.append(element("script", { src: "later.js", onload }));
+}
+
+if (typeof document !== "undefined") {
+  const embedded = document.getElementById("live-data");
+  if (embedded) start(JSON.parse(embedded.textContent));
+  else if (document.readyState === "complete") load();
+  else addEventListener("load", load);
+}

@@ -6,11 +6,15 @@ use super::{LineChart, Look, Point};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+/// A chart that is narrower than this has its names inside, in points.
+const NARROW: u32 = 480;
+
 pub fn draw(area: &Area, chart: &LineChart) -> Drawn {
+    let is_narrow = area.dim_in_pixel().0 < NARROW;
     let mut builder = ChartBuilder::on(area);
     let measured = chart.series.iter().filter(|series| series.look == Look::Measured);
     let longest = measured.map(|series| series.name.chars().count()).max().unwrap_or(0);
-    builder.margin(8).margin_right(18 + 15 * longest as i32 / 2);
+    builder.margin(8).margin_right(18 + if is_narrow { 0 } else { 15 * longest as i32 / 2 });
     builder.x_label_area_size(46).y_label_area_size(64);
     if !chart.title.is_empty() {
         builder.caption(&chart.title, (FONT, 17, &INK));
@@ -62,13 +66,20 @@ pub fn draw(area: &Area, chart: &LineChart) -> Drawn {
         };
         ends.extend(end.map(|end| (series, end, style)));
     }
-    // The names stand beside the plot, where no line touches them; those that would overlap move apart.
+    // The names stand beside the plot, where no line touches them; those that would overlap move apart. In a narrow chart
+    // they are a list in the corner below the falling lines.
     let (left, top) = area.get_base_pixel();
-    let column = context.plotting_area().get_pixel_range().0.end - left + 14;
+    let (columns, rows) = context.plotting_area().get_pixel_range();
+    let column = if is_narrow { columns.start + 34 } else { columns.end + 14 } - left;
     ends.sort_by_key(|(_, (_, y), _)| *y);
-    let mut free = i32::MIN;
+    let named = ends.iter().filter(|(series, ..)| series.look == Look::Measured).count() as i32;
+    let mut free = if is_narrow { rows.end - top - 17 * named } else { i32::MIN };
     for (series, (x, y), style) in ends {
-        let (x, y) = (x - left, y - top);
+        let (x, y) = if is_narrow && series.look == Look::Measured {
+            (column - 29, free)
+        } else {
+            (x - left, y - top)
+        };
         let text = (FONT, 14, &INK).into_text_style(area);
         if series.look == Look::Guide {
             let pos = Pos::new(HPos::Left, VPos::Bottom);

@@ -69,10 +69,10 @@ pub fn panel(stage: &Stage, label: Option<&str>, crop: Option<[f64; 4]>, small: 
         (format!("figures/{}.png", stage.id), [stage.setup.width, stage.setup.height]);
     html! {
         div .panel data-stage=(stage.id) {
-            img .pixels[is_about_pixels(stage)] src=(file) width=(width) height=(height) alt=(stage.alt)
+            div .live-frame { img .pixels[is_about_pixels(stage)] src=(file) width=(width) height=(height) alt=(stage.alt)
                 loading=[small.is_none().then_some("lazy")] fetchpriority=[small.map(|_| "high")]
                 srcset=[small.map(|small| format!("{}, {file} {width}w", small.candidate()))]
-                sizes=[small.map(|_| "(max-width: 40rem) 14rem, 70rem")];
+                sizes=[small.map(|_| "(max-width: 40rem) 14rem, 70rem")]; }
             @if let Some([x, y, w, h]) = crop {
                 @let [wide, left, top] = [f64::from(width) / w, -x / w, -y / h].map(|share| 100.0 * share);
                 div .crop style=(format!("aspect-ratio: {w} / {h}")) {

@@ -42,29 +42,26 @@ const FILES: &[(&str, &str)] = embedded![
         "05-sphere.md" "06-normals.md" "07-camera-class.md" "08-antialiasing.md" "09-diffuse.md"
         "10-metal.md" "11-glass.md" "12-camera.md" "13-defocus.md" "14-final.md" "20-many-rays.md"
         "21-mappings.md" "22-simd.md" "23-speed.md" "24-control.md" "25-error.md" "26-precision.md"
-        "27-references.md" "28-glossary.md" "glossary.toml" "measured.toml"
-        "references.toml";
+        "27-references.md" "28-glossary.md" "glossary.toml" "measured.toml" "references.toml";
     "docs/companion/measured/": "error.json" "mappings.json" "refill.json" "speed.json";
     "docs/companion/diagrams/": "basis.svg" "cosine.svg" "error.svg" "floats.svg" "fuzz.svg" "hero.svg" "hierarchy.svg"
         "lanes.svg" "lens.svg" "life-cycle.svg" "mappings.svg" "path.svg" "pipeline.svg" "points.svg" "rows.svg" "select.svg"
-        "shell.svg" "sides.svg" "snell.svg" "sphere.svg" "subtract.svg" "viewport.svg";
-    "assets/companion/": "check.css" "check.js" "diagrams.js" "fonts.css" "page.css" "page.js" "theme.js";
+        "shell.svg" "sides.svg" "snell.svg" "sphere.svg" "streams.svg" "subtract.svg" "viewport.svg";
+    "assets/companion/": "check.css" "check.js" "diagrams.js" "fonts.css" "more-fonts.css" "page.css" "page.js" "theme.js";
     "assets/web/": "film.js" "live.css" "live.js" "scene.js";
     "examples/": "lanes.rs";
     "reference/": "rt_weekend.c";
     "shaders/": "bindings.wgsl" "bvh.wgsl" "camera.wgsl" "lanes.wgsl" "material.wgsl"
-        "path.wgsl" "resolve.wgsl" "rng.wgsl" "rules.wgsl" "sphere.wgsl" "suspend.wgsl";
+        "path.wgsl" "resolve.wgsl" "rng.wgsl" "rules.wgsl" "sphere.wgsl";
     "src/batch/": "progress.rs";
     "src/denoise/": "mod.rs";
     "src/film/": "error_estimate.rs" "fixed_point.rs" "resolve.rs";
     "src/kernel/": "constants.rs" "records.rs";
     "src/job/output/": "ppm.rs";
     "src/prepared/": "camera.rs" "mod.rs";
-    "src/render_cpu/": "bvh.rs" "camera.rs" "kernels.rs" "material.rs" "rng.rs" "sphere.rs" "tiles.rs"
-        "work.rs";
+    "src/render_cpu/": "bvh.rs" "camera.rs" "kernels.rs" "material.rs" "rng.rs" "sphere.rs";
     "src/render_cpu/lanes/": "vector.rs";
     "src/render_cpu/path/": "scatter.rs" "schedule.rs" "shade.rs";
-    "src/render_gpu/": "schedule.rs";
     "src/scene/builtin/": "book.rs";
     "src/scene/": "camera.rs";
     "src/stages/table/": "setups.rs";

@@ -190,20 +190,18 @@ fn error_table(kept: &Kept) -> Result<Markup> {
 
 /// The chart of the same data, in the page's colours.
 fn error_chart(kept: &Kept, uses: &mut Uses) -> Result<Markup> {
-    let drawn = report::chart(&report_of(kept)?, TARGETS[0]);
-    let figure = chart::Figure {
-        // The caption already says both.
-        title: String::new(),
-        about: String::new(),
-        size: [640, UNTITLED_TOP + 470 * drawn.panels.len() as u32],
-        columns: 1,
-        panels: drawn.panels,
-    };
+    let mut drawn = report::chart(&report_of(kept)?, TARGETS[0]);
+    // The caption already says both.
+    (drawn.title, drawn.about, drawn.columns) = (String::new(), String::new(), 1);
     let about = "Error against time for each tracer; the table below has the times.";
-    let svg = chart::page_svg(&figure, about)?;
+    // For a window and for a phone.
+    let svgs = [[640, 470], [360, 330]].map(|[width, height]| {
+        let size = [width, UNTITLED_TOP + height * drawn.panels.len() as u32];
+        chart::page_svg(&chart::Figure { size, ..drawn.clone() }, about)
+    });
     Ok(html! {
         figure .chart id="chart-error" {
-            div .scroll tabindex="0" role="group" aria-label="Chart of error against time" { (PreEscaped(svg)) }
+            @for svg in svgs { (PreEscaped(svg?)) }
             (numbered(&html! {
                 "Error against time. Lower and further left is better; the dashed slope is half the error in four times the time. "
                 em { "cpu" } ": packets on all threads; " em { "scalar" } ": one lane on all threads; "

@@ -89,6 +89,7 @@ pub fn write(options: &CompanionOptions, interrupt: &Interrupt) -> Result<Outcom
     let build = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_millis();
     let reload = format!("<script>\n{}</script>\n", RELOAD.replace("BUILD", &build.to_string()));
     check::copy(out).map_err(Failure::Run)?;
+    write_text(&out.join("later.js"), &page.later).map_err(Failure::run)?;
     write_text(&index, &(page.html + if options.watch { &reload } else { "" })).map_err(Failure::run)?;
     let mut missing = page.pictures.len();
     for picture in page.pictures.iter().take_while(|_| !interrupt.is_set()) {

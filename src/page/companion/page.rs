@@ -23,6 +23,8 @@ const ABOUT: &str = "Ray Tracing in One Weekend, chapter by chapter: in pictures
 pub struct Page {
     /// The content of `index.html`.
     pub html: String,
+    /// The content of `later.js`: what the first screen does not need.
+    pub later: String,
     /// The stages whose stills it shows, in the book's order.
     pub stages: Vec<&'static Stage>,
     /// Its own pictures.
@@ -37,15 +39,16 @@ pub fn render(site: &Site) -> Result<Page> {
         @for chapter in &site.chapters { (section(site, chapter, &mut uses)?) }
     };
     site.check(&uses, &content.0)?;
-    let mut stages: Vec<&Stage> =
-        uses.figures.iter().flat_map(|figure| &figure.panels).map(Panel::stage).collect();
-    stages.push(cover_stage());
+    let shown = uses.figures.iter().flat_map(|figure| &figure.panels).map(Panel::stage);
+    let mut stages: Vec<&Stage> = shown.chain([cover_stage()]).collect();
     stages.sort_by_key(|stage| stage.index());
     stages.dedup();
     let live = web::live_data(stages.iter().copied())?;
+    let fonts = serde_json::json!(site.library.read("assets/companion/more-fonts.css")?);
+    let later = format!("var later = {{ fonts: {fonts}, live: {live} }};\n");
     uses.pictures.push(Picture::small(cover_stage()));
-    let page = document(site, &content, &PreEscaped(live))?;
-    Ok(Page { html: page.into_string(), stages, pictures: uses.pictures })
+    let html = document(site, &content)?.into_string();
+    Ok(Page { html, later, stages, pictures: uses.pictures })
 }
 
 /// The last stage, whose picture opens the page.
@@ -54,7 +57,7 @@ fn cover_stage() -> &'static Stage {
 }
 
 /// Styles and scripts are read like the texts, so that an author sees a change at once.
-fn document(site: &Site, content: &Markup, live: &Markup) -> Result<Markup, Fault> {
+fn document(site: &Site, content: &Markup) -> Result<Markup, Fault> {
     let assets = |names: &[&str]| -> Result<Markup, Fault> {
         let texts: Result<Vec<_>, _> =
             names.iter().map(|name| site.library.read(&format!("assets/{name}"))).collect();
@@ -82,9 +85,8 @@ fn document(site: &Site, content: &Markup, live: &Markup) -> Result<Markup, Faul
                     (content)
                     (colophon())
                 }
-                script { (assets(&["companion/page.js"])?) }
+                script type="module" { (assets(&["companion/page.js"])?) }
                 script type="module" { (assets(&["companion/diagrams.js"])?) }
-                script type="application/json" id="live-data" { (live) }
                 script type="module" { (assets(&["web/scene.js", "web/film.js", "web/live.js"])?) }
                 script type="application/json" id="check-data" { (PreEscaped(check::data())) }
                 script type="module" { (assets(&["companion/check.js"])?) }
@@ -103,6 +105,7 @@ fn cover() -> Markup {
                 "The book, chapter by chapter: every picture rendered by the program, every excerpt its real code, and \
                  every figure live in your browser. Then: lanes, threads and GPUs, measured."
             }
+            div .check-box {}
             figure .figure id="figure-cover" {
                 div .panels { (directive::panel(stage, None, None, Some(&Picture::small(stage)))) }
                 figcaption { "The book’s last picture. Press " em { "Run" } " and drag it: your own device then traces it, with the program’s shaders." }

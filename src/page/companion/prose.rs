@@ -216,6 +216,7 @@ impl Converter<'_> {
             Event::Text(text) if text.contains("{{") => {
                 bail!("a directive stands alone in its paragraph: leave a blank line above and below");
             }
+            Event::Text(text) => out.push(Event::Text(typographic(&text).into())),
             event => out.push(event),
         }
         Ok(())

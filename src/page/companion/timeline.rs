@@ -56,7 +56,7 @@ pub fn figure(id: &str, uses: &mut Uses) -> Result<Markup> {
                 @for (_, class, meaning) in LEGEND { li { span .swatch .(class) {} (meaning) } }
             }
             (numbered(&html! {
-                "The " (LANES) " lanes of a packet in the middle of “" (stage.title) "”, each with " (SAMPLES)
+                "The " (LANES) " lanes of a packet in the middle of the stage " code { (stage.id) } ", each with " (SAMPLES)
                 " samples of its pixel: a row is a lane, a column a step. Laid out from the tracer’s own paths; only after \
                  its last sample does a refilled lane wait here."
             }, uses))

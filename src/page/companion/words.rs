@@ -21,7 +21,7 @@ pub fn code_words(text: &str) -> Markup {
     }
 }
 
-/// Replaces apostrophes by typographic ones.
+/// Replaces apostrophes by typographic ones, and keeps a percent sign with its number.
 pub fn typographic(text: &str) -> String {
-    text.replace('\'', "’")
+    text.replace('\'', "’").replace(" %", "\u{a0}%")
 }
