@@ -32,6 +32,8 @@ pub struct FramesOptions {
     pub backend: BackendChoice,
     pub progress: ProgressChoice,
     pub json: Option<PathBuf>,
+    /// The command line, if there is one.
+    pub command: Option<String>,
 }
 
 /// Validates the flags of an animation.
@@ -79,6 +81,7 @@ pub(super) fn frames(flags: RenderFlags) -> Result<FramesOptions> {
         backend: flags.backend,
         progress: flags.progress,
         json: flags.files.json,
+        command: Some(super::command_line()),
     })
 }
 

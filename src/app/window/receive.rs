@@ -2,7 +2,7 @@
 
 use super::Window;
 use crate::app::commands::Command;
-use crate::app::files::Resumed;
+use crate::app::files::{Made, Resumed};
 use crate::app::model::{Dock, Document, Kept, Origin, Partner, Source};
 use crate::job::saved::{Opened, Saved};
 use crate::progressive::Stop;
@@ -12,14 +12,14 @@ use std::sync::Arc;
 impl Window {
     /// Takes all answers that have arrived.
     pub(super) fn receive(&mut self, context: &Context) {
-        while let Some(outcome) = self.files.saved.take() {
+        while let Some(outcome) = self.files.take_made() {
             match outcome {
-                Ok(path) => {
+                Ok(Made::File((path, words))) => {
                     self.shell.toasts.end_error("Not saved");
                     self.model.remembered.note_recent(&path);
-                    let name = path.file_name().unwrap_or(path.as_os_str()).display();
-                    self.shell.toasts.good_with(format!("Saved {name}"), &[Command::ShowInFolder]);
+                    self.shell.toasts.good_with(words, &[Command::ShowInFolder]);
                 }
+                Ok(Made::Companion(is_full)) => self.show_companion(context, is_full),
                 Err(reason) => {
                     self.shell.leaves_when_saved = false;
                     self.shell.toasts.bad(format!("Not saved: {reason}"));
@@ -65,9 +65,6 @@ impl Window {
                 Err(reason) => self.shell.toasts.bad(format!("Not resumed: {reason}")),
             }
             self.autosave.is_restoring = false;
-        }
-        while let Some(outcome) = self.files.companions.take() {
-            self.show_companion(context, outcome);
         }
         if let Some(outcome) = self.shell.dialogs.chosen() {
             self.end_dialog(context, outcome);
