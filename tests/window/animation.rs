@@ -81,7 +81,8 @@ fn frames_are_saved_and_continued_by_the_window_and_the_command_line() {
     let (folder, scene) = (directory.path().join("film"), directory.path().join("own.toml"));
     let mut harness = bookmarked(3);
     save(&mut harness, &folder, 5);
-    let is_saved = |window: &Window| window.messages().contains(&"Saved 5 frames in film".to_owned());
+    let is_saved =
+        |window: &Window| window.messages().contains(&format!("Saved 5 frames in {}", folder.display()));
     until(&mut harness, "the frames", is_saved);
     let names: Vec<_> =
         files(&folder).iter().map(|path| path.file_name().unwrap().display().to_string()).collect();

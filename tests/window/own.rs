@@ -105,15 +105,27 @@ fn a_sphere_is_copied_and_pasted_as_text_of_a_scene_file() {
     send(&mut harness, Command::Undo);
     send(&mut harness, Command::Undo);
     assert_eq!(spheres(&harness).len(), 2);
+    // Copied from a scene file by hand.
+    let named = "[[spheres]]\ncenter = [2.5, 1.0, 0.0]\nradius = 1.0\nmaterial = \"ball\"\n";
+    paste(&mut harness, named);
+    assert_eq!(spheres(&harness)[2].material, 1);
+    paste(
+        &mut harness,
+        &format!("[materials]\nball = {{ kind = \"dielectric\", refraction_index = 1.5 }}\n{named}"),
+    );
+    assert_eq!(spheres(&harness)[3].material, 2);
+    send(&mut harness, Command::Undo);
+    send(&mut harness, Command::Undo);
 
-    for text in [
-        "a shopping list",
-        "[[spheres]]\ncenter = [0.0, 0.0]\n",
-        &text.replace("radius = ", "radius = -0.0 #"),
+    for (text, reason) in [
+        ("a shopping list", "is not a sphere"),
+        ("[[spheres]]\ncenter = [0.0, 0.0]\n", "three numbers"),
+        (&text.replace("radius = ", "radius = -0.0 #"), "radius"),
+        ("[[spheres]]\ncenter = [0.0, 0.0, 0.0]\nradius = 1.0\nmaterial = \"none\"\n", "\"none\""),
     ] {
         paste(&mut harness, text);
-        let told = harness.state().messages();
-        assert!(told.iter().any(|told| told.starts_with("Not pasted: ")), "{told:?}");
+        let told = harness.state().messages().pop().unwrap_or_default();
+        assert!(told.starts_with("Not pasted: ") && told.contains(reason), "{told}");
         assert_eq!(spheres(&harness).len(), 2);
         harness.run_steps(2);
     }

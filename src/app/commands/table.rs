@@ -169,8 +169,7 @@ table! {
         also("clipboard");
     CopyCommand "Copy as command", "Copies the command line that renders this picture",
         keys(CTRL_SHIFT, Key::C), also("batch terminal shell clipboard");
-    Fresh "Start fresh", "Goes back to the first picture, with the usual settings; Undo returns", line();
-    Quit "Quit", "Closes the window; the next one begins where this one ends", keys(CTRL, Key::Q),
+    Quit "Quit", "Closes the window; the next one begins where this one ends", keys(CTRL, Key::Q), line(),
         also("close exit");
 
     [Some("Edit")]
@@ -239,8 +238,8 @@ table! {
         needs(is_live, KEPT_IS_SHOWN), also("slot snapshot compare");
 
     [Some("Stage")]
-    Stages "All stages…", "Every picture of the book, with a small image; type to search", key(Key::O),
-        also("list section chapter");
+    Stages "All stages…", "Every picture of the book, and extreme scenes such as dust and soap bubbles",
+        key(Key::O), also("list section chapter extreme stress stiff numerical");
     PreviousStage "Previous stage", "One step back in the book", key(Key::PageUp),
         needs(|f| f.model.neighbour(false).is_some(), "This is the first stage");
     NextStage "Next stage", "One step forward in the book", key(Key::PageDown),
@@ -283,9 +282,6 @@ table! {
     Book "Read in the book", "Opens this section in the browser", also("web section");
     Companion "Read in the companion",
         "Opens the companion at this stage; writes it first, which takes 3 seconds", also("web page explain");
-    ExtremeScenes "Extreme scenes…",
-        "Opens the list of stages at its end: dust, soap bubbles, a planet’s pole and others", line(),
-        also("stress stiff numerical");
 
     [Some("Help")]
     FirstSteps "First steps", "Brings back the card with three things to try", off(no_presentation),

@@ -19,7 +19,7 @@ pub enum Outcome {
     },
 }
 
-/// What is to be saved, and where.
+/// The choices of the dialog of saving.
 pub struct Wanted {
     pub what: What,
     /// Width and height of the picture.

@@ -43,12 +43,11 @@ pub struct Resumed {
     pub film: SavedFilm,
 }
 
-/// A file that was written, and what is said then.
-type Saved = (PathBuf, String);
-
-/// What was made in the background.
+/// Something that was written or made.
 pub enum Made {
-    File(Saved),
+    File(PathBuf),
+    /// An animation of this number of frames in this folder.
+    Frames(u32, PathBuf),
     /// The companion, the full one or not.
     Companion(bool),
 }
@@ -56,7 +55,7 @@ pub enum Made {
 /// Something that takes long to make in the background.
 struct Making {
     interrupt: Arc<Interrupt>,
-    /// What is going on.
+    /// The work, in words.
     words: String,
     /// How much of it is done, if that is known.
     percent: Arc<AtomicU32>,
@@ -76,7 +75,7 @@ pub struct Files {
     pub pending_copy: bool,
     /// Files that were written.
     saved: Answers<Made>,
-    /// What was made in the background.
+    /// Results of work in the background.
     made: Answers<Made>,
     making: Option<Making>,
     /// Files that were opened, and pictures of other programs, which say nothing about how they were made.
@@ -132,10 +131,10 @@ impl Files {
     pub fn save_frames(&mut self, context: &Context, options: FramesOptions) -> Result<(), String> {
         let (count, folder) = (options.frames.end, name_of(&options.names.directory));
         let words = format!("Rendering {count} frames for {folder}");
-        self.make(context, words, Some(folder.clone()), move |interrupt, look| {
+        self.make(context, words, Some(folder), move |interrupt, look| {
             let look = |done| look(f64::from(done) / f64::from(count));
             write_frames(&options, interrupt, look).map_err(|failure| failure.to_string())?;
-            Ok(Made::File((options.names.path(0), format!("Saved {count} frames in {folder}"))))
+            Ok(Made::Frames(count, options.names.directory))
         })
     }
 
@@ -167,7 +166,7 @@ impl Files {
         }
     }
 
-    /// What was written since the last call, or why not.
+    /// The oldest result that has not been taken yet, or why there is none.
     pub fn take_made(&mut self) -> Option<Result<Made, String>> {
         let made = self.made.take().inspect(|_| self.making = None);
         made.or_else(|| self.saved.take())
@@ -277,7 +276,7 @@ impl Files {
             replace_file(&path, |writer| writer.write_all(text.as_bytes()))
                 .map_err(|error| error.to_string())?;
             checked.note_file(&std::path::absolute(&path).unwrap_or_else(|_| path.clone()));
-            Ok(saved(path))
+            Ok(Made::File(path))
         };
         self.saved.ask("files", context, work);
     }
@@ -329,15 +328,11 @@ fn write(
         description.set(key::DENOISED, denoised.error.words());
     }
     let written = write_image(&path, film, document.rules().transfer, &description);
-    written.map(|()| saved(path)).map_err(|error| error.to_string())
+    written.map(|()| Made::File(path)).map_err(|error| error.to_string())
 }
 
-fn saved(path: PathBuf) -> Made {
-    let words = format!("Saved {}", name_of(&path));
-    Made::File((path, words))
-}
-
-fn name_of(path: &Path) -> String {
+/// The last part of a path.
+pub fn name_of(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).display().to_string()
 }
 

@@ -1,7 +1,6 @@
 //! The animation of a picture: the bookmarks of its camera, in their order, are the keyframes of a path.
 
 use super::Document;
-use crate::job::render::JobError;
 use crate::scene::Camera;
 use crate::scene::animation::{CameraPath, FRAME_LIMIT, FRAMES_PER_TURN, Keyframe, Turn};
 
@@ -70,17 +69,6 @@ impl Document {
             self.keyframes[place].frame = self.keyframes[place].frame.max(least);
         }
     }
-
-    /// Checks the camera of each frame.
-    ///
-    /// # Errors
-    /// The first frame that cannot be rendered, and why.
-    pub fn check_frames(&self, path: &CameraPath, frames: u32) -> Result<(), String> {
-        let check =
-            |frame| -> Result<(), JobError> { self.checked.job(path.camera(frame), self.settings).map(drop) };
-        let fault = |frame| check(frame).err().map(|error| format!("frame {frame}: {error}"));
-        (0..frames).find_map(fault).map_or(Ok(()), Err)
-    }
 }
 
 #[cfg(test)]
@@ -105,7 +93,6 @@ mod tests {
         for keyframe in &document.keyframes {
             assert_eq!(path.camera(keyframe.frame), keyframe.camera);
         }
-        document.check_frames(&path, 121).unwrap();
         let turning = with_bookmarks(1);
         let path = turning.path(8);
         assert_eq!(path.camera(0), turning.camera);

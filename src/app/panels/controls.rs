@@ -33,9 +33,9 @@ pub fn ui(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx:
     if has_rays {
         camera(ui, document);
         lens(ui, document);
+        scene(ui, document, cx);
         sphere(ui, document, cx);
         panel_line(ui);
-        scene(ui, document, cx);
     }
     ui.spacing_mut().item_spacing.y = 0.0;
     size_and_samples(ui, document, remembered, cx);
@@ -133,6 +133,7 @@ fn sphere(ui: &mut Ui, document: &mut Document, cx: &PanelContext) {
             cx.edit(Edit::Change(selected.sphere, body));
         }
         ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
             for (name, command) in [
                 ("Focus", Command::FocusSphere),
                 ("Duplicate", Command::DuplicateSphere),
@@ -153,9 +154,9 @@ fn scene(ui: &mut Ui, document: &Document, cx: &PanelContext) {
     let reset = (sky != own).then_some("Reset sky");
     let summary = counted(document.scene().spheres.len() as u64, "sphere");
     let header = Header { title: "Scene", summary: &summary, reset, ..Header::default() };
-    ui.spacing_mut().item_spacing.y = 0.0;
     let is_reset = fold(ui, header, false, |ui| {
         spheres::ui(ui, cx);
+        ui.add_space(8.0);
         ui.spacing_mut().item_spacing.y = 8.0;
         colour(ui, About::new("Sky overhead", "The light from straight above"), &mut sky.top);
         let help = "The light from straight below, which fades upwards";

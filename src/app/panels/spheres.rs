@@ -3,8 +3,8 @@
 use crate::app::commands::{Command, PanelContext};
 use crate::app::model::{CheckedScene, kind_word};
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{hint, named};
-use crate::scene::{Material, Scene};
+use crate::app::toolkit::widgets::{hint, named, shown_albedo};
+use crate::scene::Scene;
 use eframe::egui::{
     Atom, Button, Color32, IdSalt, Key, Response, RichText, Role, ScrollArea, Stroke, TextEdit, Ui,
     WidgetInfo, vec2,
@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 /// Heights of a row, and of the list at most, points.
 const ROW: f32 = 24.0;
-const HEIGHT: f32 = 7.0 * ROW;
+const HEIGHT: f32 = 5.0 * ROW;
 
 /// The text that is searched for, and what it finds.
 #[derive(Clone, Default)]
@@ -90,14 +90,11 @@ fn row(ui: &mut Ui, scene: &Scene, sphere: usize, is_on: bool) -> Response {
     let name = format!("Sphere {}, {}", sphere + 1, named.name);
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_on, &name));
     let middle = response.rect.left_center() + vec2(14.0, 0.0);
-    match named.material {
-        Material::Lambertian { albedo } | Material::Metal { albedo, .. } => {
-            let [r, g, b] = albedo.to_array().map(|n| (255.0 * n.clamp(0.0, 1.0).sqrt()).round() as u8);
-            ui.painter().circle_filled(middle, 5.0, Color32::from_rgb(r, g, b));
-        }
-        Material::Dielectric { .. } => {
-            ui.painter().circle_stroke(middle, 4.5, Stroke::new(1.0, theme::colours(ui).text));
-        }
+    if let Some(albedo) = named.material.albedo() {
+        let [r, g, b] = shown_albedo(albedo);
+        ui.painter().circle_filled(middle, 5.0, Color32::from_rgb(r, g, b));
+    } else {
+        ui.painter().circle_stroke(middle, 4.5, Stroke::new(1.0, theme::colours(ui).text));
     }
     response
 }

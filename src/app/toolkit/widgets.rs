@@ -449,9 +449,14 @@ fn fields(
     });
 }
 
-/// A colour to pick, or to type as shares of light. It is shown as the picture shows it in white light.
+/// The bytes of a colour as the picture shows it in white light.
+pub fn shown_albedo(albedo: DVec3) -> [u8; 3] {
+    albedo.to_array().map(|n| (255.0 * n.clamp(0.0, 1.0).sqrt()).round() as u8)
+}
+
+/// A colour to pick, or to type as shares of light.
 pub fn colour(ui: &mut Ui, about: About<'_>, albedo: &mut DVec3) {
-    let shown = albedo.to_array().map(|n| (255.0 * n.clamp(0.0, 1.0).sqrt()).round() as u8);
+    let shown = shown_albedo(*albedo);
     row(ui, about, |ui| {
         ui.spacing_mut().interact_size.x = FIELD;
         let mut picked = shown;

@@ -277,6 +277,9 @@ impl Sizer {
         self.fitting = Some((wanted, since));
         // Panels that take room from a picture show it smaller, and give the room back.
         let is_smaller = (0..2).all(|side| wanted[side] <= document.size()[side]);
+        if wanted == document.size() {
+            self.window = window;
+        }
         if wanted == document.size() || lost.is_some() && !is_asked && is_smaller && window == self.window {
             return;
         }

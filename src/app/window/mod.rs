@@ -353,6 +353,7 @@ impl Drop for Window {
 
 impl Window {
     fn end(&mut self) {
+        self.stop_play();
         self.files.end();
         self.autosave.end(&self.model, &self.changes, &mut self.tracing);
     }

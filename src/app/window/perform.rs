@@ -2,7 +2,7 @@
 
 use super::Window;
 use super::layout::NARROW;
-use crate::app::commands::{Command, MENUS};
+use crate::app::commands::{Command, MENUS, Snapshot};
 use crate::app::dialogs::{
     Dialog, LargeSize, Outcome, Purpose, SaveBox, Wanted, What, default_folder, samples_wanted, stage_list,
 };
@@ -12,7 +12,7 @@ use crate::app::model::spheres::grip::new_body;
 use crate::app::model::spheres::{self, Selected};
 use crate::app::model::{
     Body, Device, Dock, Document, Edit, Mode, Model, Origin, Partner, Presentation, Remembered, Show, Source,
-    Tab, Tone, ViewState, companion, device, navigation,
+    Tab, Tone, companion, device, navigation,
 };
 use crate::app::toolkit::Finder;
 use crate::app::toolkit::widgets::focus;
@@ -49,11 +49,11 @@ impl Window {
         }
         match snapshot.disabled_reason(command) {
             Some(reason) => self.refuse(&snapshot.name(command), &reason),
-            None => self.run(context, command),
+            None => self.run(context, command, &snapshot),
         }
     }
 
-    fn run(&mut self, context: &Context, command: Command) {
+    fn run(&mut self, context: &Context, command: Command, snapshot: &Snapshot) {
         use Command as C;
         let Window { model, tracing, display, tools, files, shell, .. } = self;
         let Model { document, view, remembered, .. } = model;
@@ -69,12 +69,12 @@ impl Window {
             C::Copy => match Selected::of(model) {
                 Some(Selected { body: Body { center, radius, material }, .. }) => {
                     context.copy_text(sphere_to_toml(center, radius, &material));
-                    shell.toasts.good("Copied the sphere as text; Ctrl+V adds it, here or in a scene file");
+                    shell.toasts.good("Copied the sphere as text; paste it here or in a scene file");
                 }
                 None => files.pending_copy = true,
             },
             C::Paste => match shell.pasted.take() {
-                Some(text) => match spheres::read(&text) {
+                Some(text) => match spheres::read(&text, document) {
                     Ok(bodies) => self.add(bodies),
                     Err(reason) => shell.toasts.good(format!("Not pasted: {reason}")),
                 },
@@ -83,7 +83,6 @@ impl Window {
             },
             C::CopyPicture => files.pending_copy = true,
             C::CopyCommand => self.copy_command(context),
-            C::Fresh => self.start_fresh(),
             C::Quit => context.send_viewport_cmd(ViewportCommand::Close),
             C::StopSaving => files.stop_saving(),
             C::Recover => self.recover(context),
@@ -187,7 +186,7 @@ impl Window {
             C::GoOnFromKept => self.go_on_from_kept(),
             C::DeleteKept => view.delete_kept(),
 
-            C::Stages | C::ExtremeScenes => self.list_stages(command == C::ExtremeScenes),
+            C::Stages => shell.dialogs.open(Dialog::Stages(stage_list::list(snapshot))),
             C::Stage(stage) => self.show_origin(Origin::of_stage(stage)),
             C::Extreme(case) => self.show_origin(Origin::of_case(case)),
             C::PreviousStage | C::NextStage => self.step_stage(command == C::NextStage),
@@ -292,21 +291,6 @@ impl Window {
         if let Some(stage) = self.model.neighbour(is_next) {
             self.show_origin(Origin::of_stage(stage));
         }
-    }
-
-    /// Opens the list of stages at the current one or, for the extreme scenes, at its end.
-    fn list_stages(&mut self, is_at_end: bool) {
-        let finder = stage_list::list(&self.snapshot(), is_at_end);
-        self.shell.dialogs.open(Dialog::Stages(finder));
-    }
-
-    pub(super) fn start_fresh(&mut self) {
-        let kept = std::mem::take(&mut self.model.view.kept);
-        self.model.view = ViewState::default();
-        self.model.view.kept = kept;
-        self.display.viewport.placement.fit();
-        self.model.is_paused = false;
-        self.show_document(Document::new(Origin::usual()));
     }
 
     // Undo
@@ -664,7 +648,7 @@ impl Window {
                     json: None,
                     command: None,
                 };
-                document.check_frames(&options.path, frames)?;
+                options.check().map_err(|error| format!("{error:#}"))?;
                 self.files.save_frames(context, options)?;
             }
         }

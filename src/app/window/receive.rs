@@ -2,7 +2,7 @@
 
 use super::Window;
 use crate::app::commands::Command;
-use crate::app::files::{Made, Resumed};
+use crate::app::files::{Made, Resumed, name_of};
 use crate::app::model::{Dock, Document, Kept, Origin, Partner, Source};
 use crate::job::saved::{Opened, Saved};
 use crate::progressive::Stop;
@@ -14,10 +14,15 @@ impl Window {
     pub(super) fn receive(&mut self, context: &Context) {
         while let Some(outcome) = self.files.take_made() {
             match outcome {
-                Ok(Made::File((path, words))) => {
+                Ok(Made::File(path)) => {
                     self.shell.toasts.end_error("Not saved");
                     self.model.remembered.note_recent(&path);
+                    let words = format!("Saved {}", name_of(&path));
                     self.shell.toasts.good_with(words, &[Command::ShowInFolder]);
+                }
+                Ok(Made::Frames(count, folder)) => {
+                    self.shell.toasts.end_error("Not saved");
+                    self.shell.toasts.good(format!("Saved {count} frames in {}", folder.display()));
                 }
                 Ok(Made::Companion(is_full)) => self.show_companion(context, is_full),
                 Err(reason) => {
@@ -90,8 +95,7 @@ impl Window {
             format!("Resumed {}", self.document().place())
         } else {
             self.model.remembered.note_recent(&path);
-            let name = path.file_name().unwrap_or(path.as_os_str()).display();
-            format!("Opened {name}; its size and samples hold for this picture only")
+            format!("Opened {}; its size and samples hold for this picture only", name_of(&path))
         });
         if let Some(film) = saved.and_then(Saved::into_film) {
             self.adopt(film.film, film.seconds);
@@ -128,7 +132,7 @@ impl Window {
         let origin = Arc::clone(&self.document().origin);
         self.files.scene_file.watch(context, &origin);
         let Source::File(path) = &origin.source else { return };
-        let name = path.file_name().unwrap_or(path.as_os_str()).display();
+        let name = name_of(path);
         while let Some(recipe) = self.files.scene_file.reread.take() {
             let is_own = self.document().checked.file().is_some_and(|saved| saved == *path);
             match recipe {
