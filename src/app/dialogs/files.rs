@@ -252,12 +252,10 @@ impl SaveBox {
             let about = About::new(name, help);
             row(ui, about, |ui| Number::new(about, 2.0..=f64::from(most)).whole_field(ui, FIELD, count));
         }
-        let speed = Some(snapshot.status.paths_per_second()).filter(|speed| *speed > 0.0);
-        let size = self.pixels(self.size, snapshot.document());
-        let paths =
-            size.map(f64::from).iter().product::<f64>() * f64::from(self.samples) * f64::from(self.frames);
-        let time = speed
-            .map_or_else(String::new, |speed| format!(", about {} to render", time((paths / speed).ceil())));
+        let (size, paths) =
+            (self.pixels(self.size, snapshot.document()), u64::from(self.samples) * u64::from(self.frames));
+        let seconds = seconds_at(&snapshot.status, size, paths);
+        let time = seconds.map_or_else(String::new, |seconds| format!(", about {} to render", time(seconds)));
         small(ui, format!("{:.1} s{time}", f64::from(self.frames) / FRAMES_PER_SECOND));
     }
 
@@ -270,10 +268,11 @@ impl SaveBox {
             (Size::Other, "Other"),
         ] {
             let [width, height] = self.pixels(size, snapshot.document());
-            let when = match seconds_at(snapshot.document(), &snapshot.status, [width, height]) {
+            let samples = samples_wanted(snapshot.document(), &snapshot.status);
+            let when = match seconds_at(&snapshot.status, [width, height], samples) {
                 _ if self.what == What::Animation => String::new(),
                 _ if snapshot.document().size() == [width, height] => ", ready".to_owned(),
-                Some(seconds) => format!(", about {}", time(seconds.ceil())),
+                Some(seconds) => format!(", about {}", time(seconds)),
                 None => String::new(),
             };
             let help = match size {
@@ -364,11 +363,10 @@ pub fn samples_wanted(document: &Document, status: &Status) -> u64 {
     if matches!(status.phase, Phase::Done(_)) { traced } else { document.stop.samples.unwrap_or(traced) }
 }
 
-/// About how many seconds the picture takes at this size.
-fn seconds_at(document: &Document, status: &Status, [width, height]: [u32; 2]) -> Option<f64> {
+/// About how many seconds this number of samples per pixel takes at this size.
+fn seconds_at(status: &Status, [width, height]: [u32; 2], samples: u64) -> Option<f64> {
     let speed = Some(status.paths_per_second()).filter(|speed| *speed > 0.0)?;
-    let samples = samples_wanted(document, status) as f64;
-    Some(f64::from(width) * f64::from(height) * samples / speed)
+    Some((f64::from(width) * f64::from(height) * samples as f64 / speed).ceil())
 }
 
 /// A size that needs much memory or time, and asks before it is rendered.
@@ -390,9 +388,9 @@ impl LargeSize {
         let bytes_of = |[width, height]: [u32; 2]| {
             Film::bytes(width, height, halves) + 7 * u64::from(width) * u64::from(height)
         };
-        let (bytes, seconds) = (bytes_of(size), seconds_at(document, status, size));
-        let is_slow =
-            |size| seconds_at(document, status, size).is_some_and(|seconds| seconds > LargeSize::SECONDS);
+        let seconds_of = |size| seconds_at(status, size, samples_wanted(document, status));
+        let (bytes, seconds) = (bytes_of(size), seconds_of(size));
+        let is_slow = |size| seconds_of(size).is_some_and(|seconds| seconds > LargeSize::SECONDS);
         if bytes_of(before) >= bytes || bytes <= LargeSize::BYTES && (!is_slow(size) || is_slow(before)) {
             return None;
         }
