@@ -108,7 +108,7 @@ fn row_ui(ui: &mut Ui, row: Command, is_chosen: bool, snapshot: &Snapshot) -> Re
         None => choice(ui, is_chosen, (words, Atom::grow())),
     };
     let button = button.min_size(vec2(ui.available_width(), 52.0));
-    let response = ui.add(button.truncate().frame_when_inactive(is_chosen));
+    let response = ui.add(button.frame_when_inactive(is_chosen));
     response.widget_info(|| WidgetInfo::selected(egui::Role::Button, true, is_chosen, row.name()));
     tip(ui, response, row.help(), None)
 }

@@ -8,8 +8,8 @@ use crate::stages::Stage;
 use eframe::egui::{Label, Link, RichText, Ui};
 
 /// How a scene of one's own begins.
-const NEW: &str = "Insert puts a sphere where the pointer is. Click one to drag it and to change it at the left. The sky is \
-                   there, too. Ctrl+S saves the picture or the scene.";
+const NEW: &str = "Insert puts a sphere where the pointer is. Click a sphere to drag it; the controls change its size, its \
+                   material and the sky. Ctrl+S saves the picture or the scene.";
 
 pub fn ui(ui: &mut Ui, cx: &PanelContext) {
     let document = cx.document();
