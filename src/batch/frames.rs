@@ -4,8 +4,8 @@
 use super::progress::display;
 use super::studio::{Event, Studio};
 use super::{ended, write_figures};
+use crate::cli::FramesOptions;
 use crate::cli::terminal::{Display, print_beside};
-use crate::cli::{FramesOptions, command_line};
 use crate::film::key;
 use crate::job::output::write_image;
 use crate::job::recipe::Recipe;
@@ -29,25 +29,10 @@ use std::time::{Duration, Instant};
 /// [`Failure::Input`] if nothing was rendered; [`Failure::BrokeOff`] if a render failed but earlier frames are
 /// complete; [`Failure::Run`] otherwise.
 pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
-    make_directory(&options.names.directory).map_err(Failure::Input)?;
-    let first = options.names.path(options.frames.start);
-    let json = options.json.as_deref();
-    for path in [Some(first.as_path()), json].into_iter().flatten() {
-        check_writable(path).map_err(Failure::input)?;
-    }
-    options.job.check_memory(1).map_err(Failure::input)?;
+    check(&options)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
-    let mut run = Run {
-        options: &options,
-        interrupt: &interrupt,
-        display: display(options.progress, options.frames.len() as u64, &options.recipe.name),
-        begin: Instant::now(),
-        rendered: 0,
-        kept: 0,
-        rendering: Duration::ZERO,
-        warnings: Vec::new(),
-    };
-    let failure = match run.render_all() {
+    let mut run = Run::new(&options, &interrupt);
+    let failure = match run.render_all(|_| {}) {
         Err(failure @ Failure::Input(_)) => return Err(failure),
         outcome => outcome.err(),
     };
@@ -55,6 +40,29 @@ pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
     let printed = print_beside(options.json.as_deref(), &format!("{}\n", run.text()));
     let figures = printed.and(write_figures(&run.json(), options.json.as_deref()));
     ended(failure, figures, &interrupt)
+}
+
+/// Renders the missing frames until `interrupt` is set, like [`render_frames`]. `look` gets the number of frames that are
+/// done.
+///
+/// # Errors
+/// Those of [`render_frames`].
+pub fn write_frames(
+    options: &FramesOptions,
+    interrupt: &Interrupt,
+    look: impl FnMut(u32),
+) -> Result<(), Failure> {
+    check(options)?;
+    Run::new(options, interrupt).render_all(look)
+}
+
+fn check(options: &FramesOptions) -> Result<(), Failure> {
+    make_directory(&options.names.directory).map_err(Failure::Input)?;
+    let first = options.names.path(options.frames.start);
+    for path in [Some(first.as_path()), options.json.as_deref()].into_iter().flatten() {
+        check_writable(path).map_err(Failure::input)?;
+    }
+    options.job.check_memory(1).map_err(Failure::input)
 }
 
 /// An animation in progress.
@@ -69,14 +77,28 @@ struct Run<'a> {
     warnings: Vec<String>,
 }
 
-impl Run<'_> {
+impl<'a> Run<'a> {
+    fn new(options: &'a FramesOptions, interrupt: &'a Interrupt) -> Self {
+        Run {
+            options,
+            interrupt,
+            display: display(options.progress, options.frames.len() as u64, &options.recipe.name),
+            begin: Instant::now(),
+            rendered: 0,
+            kept: 0,
+            rendering: Duration::ZERO,
+            warnings: Vec::new(),
+        }
+    }
+
     fn done(&self) -> u32 {
         self.rendered + self.kept
     }
 
-    fn render_all(&mut self) -> Result<(), Failure> {
+    fn render_all(&mut self, mut look: impl FnMut(u32)) -> Result<(), Failure> {
         let mut studio = None;
         for frame in self.options.frames.clone() {
+            look(self.done());
             if self.interrupt.is_set() {
                 return Ok(());
             }
@@ -146,7 +168,9 @@ impl Run<'_> {
         let _writing = self.interrupt.while_writing(path.shown());
         let mut description = describe(recipe, self.options.stage, &film, &status, Some(0.0));
         description.set(key::FRAME, frame);
-        description.set(key::COMMAND, command_line());
+        if let Some(command) = &self.options.command {
+            description.set(key::COMMAND, command.clone());
+        }
         write_image(path, &film, recipe.rules.transfer, &description)?;
         log::info!("wrote {}", path.display());
         Ok(true)

@@ -13,7 +13,7 @@ mod progress;
 mod studio;
 mod summary;
 
-pub use frames::render_frames;
+pub use frames::{render_frames, write_frames};
 pub use part::render_part;
 pub use planning::plan;
 pub use studio::{Event, Studio};

@@ -32,6 +32,22 @@ pub struct FramesOptions {
     pub backend: BackendChoice,
     pub progress: ProgressChoice,
     pub json: Option<PathBuf>,
+    /// The command line, if there is one.
+    pub command: Option<String>,
+}
+
+impl FramesOptions {
+    /// Checks the camera of every frame.
+    ///
+    /// # Errors
+    /// The first frame that cannot be rendered, and why.
+    pub fn check(&self) -> Result<()> {
+        let FramesOptions { job, path, frames, .. } = self;
+        for frame in frames.clone() {
+            job.seen_by(path.camera(frame), *job.settings()).with_context(|| format!("frame {frame}"))?;
+        }
+        Ok(())
+    }
 }
 
 /// Validates the flags of an animation.
@@ -56,9 +72,6 @@ pub(super) fn frames(flags: RenderFlags) -> Result<FramesOptions> {
             bail!("--turntable in degrees needs --frames A..B: a turn may not be a whole number of frames")
         }
     };
-    for frame in frames.clone() {
-        job.seen_by(path.camera(frame), *job.settings()).with_context(|| format!("frame {frame}"))?;
-    }
     let Some(out) = flags.files.out.as_deref().filter(|_| flags.batch) else {
         bail!(
             "an animation needs --batch and --out: it writes many pictures; name a directory, or a pattern such as \
@@ -69,7 +82,7 @@ pub(super) fn frames(flags: RenderFlags) -> Result<FramesOptions> {
     let files: Vec<PathBuf> = frames.clone().map(|frame| names.path(frame)).collect();
     let outputs = files.iter().chain(&flags.files.json).map(PathBuf::as_path);
     check_paths(sources::scene_file(flags.picture.scene.as_deref()), outputs)?;
-    Ok(FramesOptions {
+    let options = FramesOptions {
         recipe: chosen.recipe,
         job,
         stage: chosen.stage,
@@ -79,7 +92,10 @@ pub(super) fn frames(flags: RenderFlags) -> Result<FramesOptions> {
         backend: flags.backend,
         progress: flags.progress,
         json: flags.files.json,
-    })
+        command: Some(super::command_line()),
+    };
+    options.check()?;
+    Ok(options)
 }
 
 /// The files of the frames: `frame-0000.png` and so on in a directory, or named after a pattern.

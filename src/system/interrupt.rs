@@ -171,7 +171,7 @@ impl Interrupt {
 
     /// An instance that ignores signals; only its flag ends the work.
     #[cfg(any(test, feature = "window"))]
-    pub(crate) fn unheard() -> Self {
+    pub fn unheard() -> Self {
         Interrupt(Arc::default())
     }
 

@@ -1,6 +1,7 @@
 //! Tests the window through its real state, as a person would use it: every command, key and control.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
+mod animation;
 mod commands;
 mod common;
 mod compare;
@@ -15,6 +16,7 @@ mod gpu_common;
 mod kept;
 mod moving;
 mod objects;
+mod own;
 mod palette;
 mod panels;
 mod paths;

@@ -40,10 +40,10 @@ fn a_drag_on_the_picture_takes_the_keys_from_a_field() {
 #[test]
 fn the_sky_is_changed_beside_the_picture() {
     let mut harness = open("--stage metal --size 32x18 --device cpu");
-    assert!(harness.query_all_by_label("Overhead").next().is_none());
-    send(&mut harness, Command::SkyColours);
+    assert!(harness.query_all_by_label("Sky overhead").next().is_none());
+    send(&mut harness, Command::Field("Scene"));
     harness.run_steps(20);
-    assert!(harness.query_all_by_label("Overhead").next().is_some() && !harness.state().has_dialog());
+    assert!(harness.query_all_by_label("Sky overhead").next().is_some() && !harness.state().has_dialog());
 }
 
 #[test]
@@ -66,6 +66,15 @@ fn a_bookmark_brings_the_camera_back() {
     send(&mut harness, Command::Bookmark(0));
     harness.run_steps(2);
     assert_eq!(harness.state().shown_document().camera, before);
+    // It is there when one comes back to the stage, and can be deleted.
+    send(&mut harness, Command::NextStage);
+    assert!(harness.state().shown_document().keyframes.is_empty());
+    send(&mut harness, Command::PreviousStage);
+    assert_eq!(harness.state().shown_document().keyframes.len(), 1);
+    send(&mut harness, Command::DeleteBookmark);
+    assert!(harness.state().shown_document().keyframes.is_empty());
+    send(&mut harness, Command::Undo);
+    assert_eq!(harness.state().shown_document().keyframes.len(), 1);
 }
 
 #[test]

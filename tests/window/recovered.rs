@@ -189,13 +189,7 @@ fn remembering(arguments: &str, stored: &Stored) -> Harness<'static, Window> {
 fn settings_of_the_same_version_are_remembered() {
     let mut stored = Stored::default();
     let mut harness = remembering("--stage metal --size 16x9", &stored);
-    for command in [
-        Command::Theme(Theme::Light),
-        Command::ErrorDock,
-        Command::Info,
-        Command::Reference,
-        Command::AddBookmark,
-    ] {
+    for command in [Command::Theme(Theme::Light), Command::ErrorDock, Command::Info, Command::Reference] {
         send(&mut harness, command);
     }
     send(&mut harness, Command::Show(Show::Luminance));
@@ -203,7 +197,7 @@ fn settings_of_the_same_version_are_remembered() {
     let kept = harness.state_mut().remembered_mut().clone();
     harness.state_mut().save(&mut stored);
     assert_eq!((kept.theme, kept.dock, kept.has_info), (Theme::Light, Some(Dock::Error), false));
-    assert_eq!((kept.device, kept.bookmarks.len(), kept.threads), (Device::Reference, 1, Some(1)));
+    assert_eq!((kept.device, kept.threads), (Device::Reference, Some(1)));
     assert_eq!(remembering("--device cpu", &stored).state().show(), Show::Luminance);
     let mut again = remembering("--stage metal", &stored);
     assert_eq!(again.state().show(), Show::Picture, "a picture that was asked for is shown");

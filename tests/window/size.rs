@@ -1,6 +1,6 @@
 //! The size of the picture: that of the viewport, the book's, or its own.
 
-use crate::common::{has_samples, until, window_of_new_user};
+use crate::common::{has_samples, send, until, window_of_new_user};
 use crate::questions::Ask as _;
 use eframe::egui::{self, Key};
 use egui_kittest::Harness;
@@ -75,4 +75,27 @@ fn a_size_that_needs_much_memory_is_asked_about_first() {
     harness.key_press(Key::Escape);
     harness.run_steps(3);
     assert_eq!((size(&harness), harness.state().has_dialog()), (before, false));
+}
+
+#[test]
+fn a_panel_that_takes_room_from_the_picture_only_shows_it_smaller() {
+    let mut harness = following(FOLLOWING, [1280.0, 800.0]);
+    settle(&mut harness);
+    until(&mut harness, "the end", has_samples(2));
+    let (whole, run) = (size(&harness), harness.state().status().run);
+    let mut heights = Vec::new();
+    for command in [Command::KeptDock, Command::ErrorDock, Command::LanesDock, Command::Code] {
+        send(&mut harness, command);
+        settle(&mut harness);
+        heights.push(harness.get_by_label("Picture").rect().height());
+        assert_eq!((size(&harness), harness.state().status().run), (whole, run), "{command:?}");
+        assert!(harness.query_by_label("This picture is scaled.").is_none());
+        assert!(harness.state().picture_rect().width() < whole[0] as f32);
+    }
+    heights.dedup();
+    assert_eq!(heights.len(), 1, "all tabs of the dock are as high: {heights:?}");
+    // A larger room is filled.
+    harness.key_press(Key::Tab);
+    settle(&mut harness);
+    assert!(size(&harness)[0] > whole[0]);
 }

@@ -1,7 +1,7 @@
 //! All commands of menus, keys, buttons and the palette: one table, with one row per command.
 
 use super::snapshot::Snapshot;
-use crate::app::model::{Channel, Device, Dock, Mode, Model, Partner, Show, Tab, ViewState};
+use crate::app::model::{Channel, Device, Dock, Mode, Partner, Show, Tab, ViewState};
 use crate::job::output::OutputFormat;
 use crate::measure::stress::Case;
 use crate::stages::Stage;
@@ -143,6 +143,8 @@ table! {
         /// Opens a recent file.
         Recent(usize),
         Bookmark(usize),
+        /// Selects a sphere.
+        Sphere(usize),
         /// Looks at a kept picture, counted from 0.
         Kept(usize),
         CompareWith(Partner),
@@ -151,21 +153,23 @@ table! {
     }
 
     [Some("File")]
+    NewScene "New scene", "Begins a scene of your own: a ball on the ground", keys(CTRL, Key::N), also("create empty own");
     Open "Open…", "Opens a scene, a picture or a film, and resumes it", keys(CTRL, Key::O),
         also("load import resume");
     CheckPicture "Check my picture…", "Finds the mistake in a picture that your own program has rendered",
         also("wrong mistake homework verify compare");
     Save "Save…", "Saves the picture, the film or the scene", keys(CTRL, Key::S), line(),
         needs(is_live, KEPT_IS_SHOWN), also("save as export png ppm exr toml download film scene");
+    SaveAnimation "Save animation…", "Renders the frames of a film: along the bookmarks, or once around",
+        off(|f| f.no_rays().map(str::to_owned)), also("video movie frames turntable keyframes");
     ShowInFolder "Show in folder", "Opens the folder of the file that was saved or opened last",
         needs(|f| !f.model.remembered.recent.is_empty(), "Nothing has been saved or opened yet"),
         also("directory explorer finder");
-    CopyPicture "Copy picture", "Copies the picture at full size", keys(CTRL, Key::C),
-        needs(is_live, KEPT_IS_SHOWN), also("clipboard");
+    CopyPicture "Copy picture", "Copies the picture at full size", needs(is_live, KEPT_IS_SHOWN),
+        also("clipboard");
     CopyCommand "Copy as command", "Copies the command line that renders this picture",
         keys(CTRL_SHIFT, Key::C), also("batch terminal shell clipboard");
-    Fresh "Start fresh", "Goes back to the first picture, with the usual settings; Undo returns", line();
-    Quit "Quit", "Closes the window; the next one begins where this one ends", keys(CTRL, Key::Q),
+    Quit "Quit", "Closes the window; the next one begins where this one ends", keys(CTRL, Key::Q), line(),
         also("close exit");
 
     [Some("Edit")]
@@ -176,14 +180,16 @@ table! {
     ResetAll "Reset everything", "Returns to the stage as it is in the book; Undo brings your changes back",
         needs(|f| f.document().is_changed(), "This is the stage as it is in the book"),
         also("original lost back");
+    Copy "Copy", "Copies the selected sphere as text of a scene file; if none is selected, the picture",
+        keys(CTRL, Key::C), line(), needs(is_live, KEPT_IS_SHOWN), also("clipboard toml sphere picture");
+    Paste "Paste", "Adds the spheres of the copied text of a scene file", keys(CTRL, Key::V),
+        off(|f| f.no_rays().map(str::to_owned)), also("clipboard toml insert sphere");
     AddSphere "Add a sphere", "Puts a sphere where the pointer is", key(Key::Insert), line(),
         off(|f| f.no_rays().map(str::to_owned)), also("new ball");
     DuplicateSphere "Duplicate the sphere", "Puts a copy beside the selected sphere", keys(CTRL, Key::D),
         needs(has_selection, NO_SPHERE), also("copy ball");
     DeleteSphere "Delete the sphere", "Removes the selected sphere", key(Key::Delete),
         needs(has_selection, NO_SPHERE), also("remove ball");
-    SkyColours "Sky colours", "Changes the two colours that the sky fades between",
-        off(|f| f.no_rays().map(str::to_owned)), also("background light gradient");
     Home "Reset the camera", "Returns to the camera and lens of the stage", key(Key::Home), line(),
         needs(|f| f.document().camera != f.document().origin.recipe.camera, "This is the camera of the stage"),
         also("home lost back original");
@@ -210,8 +216,13 @@ table! {
     FullScreen "Full screen", "Fills the screen with the window", key(Key::F11), on(|f| f.model.is_full_screen);
 
     [Some("Bookmarks")]
-    AddBookmark "Bookmark this camera", "Keeps this camera and lens to jump back to", keys(CTRL, Key::B),
-        off(|f| f.no_rays().map(str::to_owned)), also("view position");
+    AddBookmark "Bookmark this camera", "Keeps camera and lens, to jump back to and for the animation",
+        keys(CTRL, Key::B), off(|f| f.no_rays().map(str::to_owned)), also("view position keyframe");
+    DeleteBookmark "Delete this bookmark", "Deletes the bookmark of this camera",
+        needs(|f| f.document().bookmark().is_some(), "This camera is not bookmarked"), also("remove keyframe");
+    Play "Play the animation", "Moves the camera along the bookmarks; with fewer than two, once around",
+        keys(SHIFT, Key::P), off(|f| f.no_rays().map(str::to_owned)), on(|f| f.model.playing.is_some()),
+        also("preview video turntable path");
 
     [Some("Render")]
     Pause "Pause or resume", "Pauses or resumes; when done, continues to half the error. No sample is lost",
@@ -227,8 +238,8 @@ table! {
         needs(is_live, KEPT_IS_SHOWN), also("slot snapshot compare");
 
     [Some("Stage")]
-    Stages "All stages…", "Every picture of the book, with a small image; type to search", key(Key::O),
-        also("list section chapter");
+    Stages "All stages…", "Every picture of the book, and extreme scenes such as dust and soap bubbles",
+        key(Key::O), also("list section chapter extreme stress stiff numerical");
     PreviousStage "Previous stage", "One step back in the book", key(Key::PageUp),
         needs(|f| f.model.neighbour(false).is_some(), "This is the first stage");
     NextStage "Next stage", "One step forward in the book", key(Key::PageDown),
@@ -271,9 +282,6 @@ table! {
     Book "Read in the book", "Opens this section in the browser", also("web section");
     Companion "Read in the companion",
         "Opens the companion at this stage; writes it first, which takes 3 seconds", also("web page explain");
-    ExtremeScenes "Extreme scenes…",
-        "Opens the list of stages at its end: dust, soap bubbles, a planet’s pole and others", line(),
-        also("stress stiff numerical");
 
     [Some("Help")]
     FirstSteps "First steps", "Brings back the card with three things to try", off(no_presentation),
@@ -309,12 +317,11 @@ table! {
         unlisted();
     RenderAtSize "Render at this size",
         "Renders one pixel of the picture per pixel of the screen; the samples begin anew", unlisted();
-    StopSaving "Stop", "Gives up this render", unlisted();
+    StopSaving "Stop", "Gives up what is being made", unlisted();
     Recover "Resume", "Shows it, and adds more samples", unlisted();
     DeleteLeft "Delete it", "Deletes what the last window has left", unlisted();
     WholeCompanion "Render it in full quality",
         "Renders its pictures at full size and without noise, which takes some minutes", unlisted();
-    StopCompanion "Stop", "Leaves out the pictures that are missing", unlisted();
     GoOnFromKept "Continue from it", "Makes it the picture that is traced, and adds more samples",
         off(|f| match f.model.view.kept_partner() {
             Some(kept) if kept.document.is_none() => Some("Open the file to continue it".to_owned()),
@@ -411,13 +418,14 @@ impl Command {
         ROWS.iter().find(|row| row.command == self)
     }
 
-    /// Its general name. [`Snapshot::name`] knows more, such as the name of a bookmark.
+    /// Its general name. [`Snapshot::name`] knows more, such as the name of a file.
     pub fn name(self) -> String {
         match self {
             Command::Stage(stage) => format!("{} {}", stage.section, stage.title),
             Command::Extreme(case) => case.title().to_owned(),
             Command::Recent(place) => format!("Recent file {}", place + 1),
             Command::Bookmark(place) => format!("Bookmark {}", place + 1),
+            Command::Sphere(place) => format!("Sphere {}", place + 1),
             Command::Kept(place) => format!("Kept picture {}", place + 1),
             Command::Field(name) => name.to_owned(),
             _ => self.row().map_or_else(String::new, |row| row.name.to_owned()),
@@ -460,7 +468,7 @@ impl Snapshot {
 
     /// The commands that go to the bookmarks, in their order.
     pub fn bookmarks(&self) -> impl Iterator<Item = Command> {
-        (0..self.model.remembered.bookmarks.len()).map(Command::Bookmark)
+        (0..self.document().keyframes.len()).map(Command::Bookmark)
     }
 
     /// The file that a command opens, if it was opened or saved before.
@@ -469,15 +477,15 @@ impl Snapshot {
         self.model.remembered.recent.get(place).map(PathBuf::as_path)
     }
 
-    /// The name of a command, with the change that it undoes, the file that it opens or the bookmark that it goes to.
+    /// The name of a command, with the change that it undoes, or the file that it opens.
     pub fn name(&self, command: Command) -> String {
-        let Model { view, remembered, .. } = &self.model;
+        let view = &self.model.view;
         let named = match command {
             Command::Undo => self.undo.map(|change| format!("Undo: {change}")),
             Command::Redo => self.redo.map(|change| format!("Redo: {change}")),
+            Command::Copy if self.model.selected.is_some() => Some("Copy the sphere".to_owned()),
             Command::Kept(place) => view.kept.get(place).map(|kept| kept.name.clone()),
             Command::CompareWith(partner) => Some(self.model.partner_name(partner)),
-            Command::Bookmark(place) => remembered.bookmarks.get(place).map(|bookmark| bookmark.name.clone()),
             Command::Recent(_) => {
                 self.path(command).and_then(Path::file_name).map(|name| name.display().to_string())
             }
@@ -500,6 +508,7 @@ impl Snapshot {
             Command::Stage(stage) => Some(self.document().stage() == Some(stage)),
             Command::Extreme(case) => Some(self.document().case() == Some(case)),
             Command::CompareWith(partner) => Some(self.model.view.partner == partner),
+            Command::Bookmark(place) => Some(self.document().bookmark() == Some(place)),
             _ => command.row()?.on.as_ref().map(|on| on(self)),
         }
     }

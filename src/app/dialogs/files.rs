@@ -1,15 +1,17 @@
 //! Dialogs about files: saving, the system's own dialog, and a field for a path where the system has none.
 
-use super::outcome::{Outcome, Purpose, What};
+use super::outcome::{Outcome, Purpose, Wanted, What};
 use crate::app::commands::Snapshot;
 use crate::app::model::Document;
+use crate::app::model::animation::FRAMES_PER_SECOND;
 use crate::app::panels::status::time;
-use crate::app::toolkit::widgets::{About, FIELD, Number, hint, named, primary, small};
+use crate::app::toolkit::widgets::{About, FIELD, Number, hint, named, primary, row, small};
 use crate::app::toolkit::{Answers, theme};
 use crate::film::Film;
 use crate::job::recipe::plain_name;
 use crate::job::render::SIZE_LIMIT;
 use crate::progressive::{Phase, Status};
+use crate::scene::animation::FRAME_LIMIT;
 use crate::system::files::pictures_directory;
 use crate::system::memory;
 use eframe::egui::text::{CCursor, CCursorRange};
@@ -128,17 +130,28 @@ pub struct SaveBox {
     what: What,
     size: Size,
     other: [u32; 2],
+    /// Frames of an animation, and samples per pixel of each.
+    frames: u32,
+    samples: u32,
 }
 
 impl SaveBox {
-    pub fn new(name: &str, folder: PathBuf, what: What, size: [u32; 2]) -> Self {
-        SaveBox { name: name.to_owned(), folder, what, size: Size::Seen, other: size }
+    pub fn new(document: &Document, folder: PathBuf, what: What) -> Self {
+        SaveBox {
+            name: file_name(document),
+            folder,
+            what,
+            size: Size::Seen,
+            other: document.size(),
+            frames: document.frame_count(),
+            samples: document.stop.samples.map_or(FRAME_SAMPLES, |samples| samples as u32),
+        }
     }
 
     /// The path with the ending, which is added if the name has another.
     fn path(&self) -> PathBuf {
         let (path, ending) = (self.folder.join(self.name.trim()), self.what.ending());
-        if path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending)) {
+        if ending.is_empty() || path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending)) {
             return path;
         }
         let mut name = path.into_os_string();
@@ -159,14 +172,19 @@ impl SaveBox {
         ui.heading("Save");
         ui.add_space(8.0);
         let field = labelled(ui, "Name", |ui| {
-            ui.weak(format!(".{}", self.what.ending()));
+            ui.weak(match self.what {
+                What::Animation => "/frame-0000.png".to_owned(),
+                _ => format!(".{}", self.what.ending()),
+            });
             ui.add(TextEdit::singleline(&mut self.name).desired_width(f32::INFINITY))
         });
         named(&field, "Name");
         focus(ui, &field, &self.name);
         // A typed ending chooses the format.
         let typed = Path::new(self.name.trim()).extension();
-        let is_typed = |ending: &str| typed.is_some_and(|typed| typed.eq_ignore_ascii_case(ending));
+        let is_typed = |ending: &str| {
+            !ending.is_empty() && typed.is_some_and(|typed| typed.eq_ignore_ascii_case(ending))
+        };
         let of_ending = What::ALL.into_iter().find(|(.., ending)| is_typed(ending));
         self.what = of_ending.map_or(self.what, |(what, ..)| what);
         labelled(ui, "Folder", |ui| {
@@ -181,8 +199,11 @@ impl SaveBox {
         ui.add_space(8.0);
         ui.columns_const(|[left, right]| {
             small(left, "What");
+            let can_move = snapshot.no_rays().is_none();
             for (what, label, help, _) in What::ALL {
-                option(left, &mut self.what, what, label, help);
+                if what != What::Animation || can_move {
+                    option(left, &mut self.what, what, label, help);
+                }
             }
             right.add_enabled_ui(self.what != What::Scene, |ui| self.sizes(ui, snapshot));
         });
@@ -190,7 +211,9 @@ impl SaveBox {
         let size = self.pixels(self.size, shown);
         let (is_replaced, has_folder) = (path.exists(), path.parent().is_none_or(Path::is_dir));
         let (free, mut replaces) = (free_path(&path), false);
+        let is_animation = self.what == What::Animation;
         match has_folder {
+            _ if is_animation && path.is_dir() => ui.weak("Frames of it that are there already are kept."),
             _ if is_replaced => {
                 ui.horizontal(|ui| {
                     let name = free.file_name().unwrap_or_default().display();
@@ -206,13 +229,34 @@ impl SaveBox {
             }
             true => ui.label(""),
         };
-        let is_usable = !self.name.trim().is_empty() && !path.is_dir();
+        let is_usable = !self.name.trim().is_empty() && path.is_dir() <= is_animation;
         match buttons(ui, &field, "Save", is_usable) {
-            _ if replaces && is_usable => Outcome::Save(self.what, size, path),
-            Some(true) => Outcome::Save(self.what, size, free),
+            _ if replaces && is_usable => Outcome::Save(self.wanted(size, path)),
+            Some(true) => Outcome::Save(self.wanted(size, if is_animation { path } else { free })),
             Some(false) => Outcome::Close,
             None => Outcome::Stay,
         }
+    }
+
+    fn wanted(&self, size: [u32; 2], path: PathBuf) -> Wanted {
+        let SaveBox { what, frames, samples, .. } = *self;
+        Wanted { what, size, frames, samples, path }
+    }
+
+    /// How long an animation is, and how fine.
+    fn film(&mut self, ui: &mut Ui, snapshot: &Snapshot) {
+        for (name, help, count, most) in [
+            ("Frames", "30 make a second", &mut self.frames, FRAME_LIMIT),
+            ("Samples", "Samples per pixel of each frame", &mut self.samples, u32::MAX),
+        ] {
+            let about = About::new(name, help);
+            row(ui, about, |ui| Number::new(about, 2.0..=f64::from(most)).whole_field(ui, FIELD, count));
+        }
+        let (size, paths) =
+            (self.pixels(self.size, snapshot.document()), u64::from(self.samples) * u64::from(self.frames));
+        let seconds = seconds_at(&snapshot.status, size, paths);
+        let time = seconds.map_or_else(String::new, |seconds| format!(", about {} to render", time(seconds)));
+        small(ui, format!("{:.1} s{time}", f64::from(self.frames) / FRAMES_PER_SECOND));
     }
 
     fn sizes(&mut self, ui: &mut Ui, snapshot: &Snapshot) {
@@ -224,9 +268,11 @@ impl SaveBox {
             (Size::Other, "Other"),
         ] {
             let [width, height] = self.pixels(size, snapshot.document());
-            let when = match seconds_at(snapshot.document(), &snapshot.status, [width, height]) {
+            let samples = samples_wanted(snapshot.document(), &snapshot.status);
+            let when = match seconds_at(&snapshot.status, [width, height], samples) {
+                _ if self.what == What::Animation => String::new(),
                 _ if snapshot.document().size() == [width, height] => ", ready".to_owned(),
-                Some(seconds) => format!(", about {}", time(seconds.ceil())),
+                Some(seconds) => format!(", about {}", time(seconds)),
                 None => String::new(),
             };
             let help = match size {
@@ -243,8 +289,14 @@ impl SaveBox {
                 }
             });
         }
+        if self.what == What::Animation {
+            self.film(ui, snapshot);
+        }
     }
 }
+
+/// Samples per pixel of a frame, unless the picture has a number of its own.
+const FRAME_SAMPLES: u32 = 64;
 
 /// Opens the system's dialog, and blocks until it is closed.
 fn choose(purpose: Purpose, from: &Path) -> Option<PathBuf> {
@@ -297,7 +349,7 @@ pub fn default_folder() -> Option<PathBuf> {
 }
 
 /// The name for a file of this picture.
-pub fn file_name(document: &Document) -> String {
+fn file_name(document: &Document) -> String {
     let title = match document.stage() {
         Some(stage) if !document.has_changed_scene() => format!("{} {}", stage.section, stage.title),
         _ => return plain_name(&document.name()),
@@ -311,11 +363,10 @@ pub fn samples_wanted(document: &Document, status: &Status) -> u64 {
     if matches!(status.phase, Phase::Done(_)) { traced } else { document.stop.samples.unwrap_or(traced) }
 }
 
-/// About how many seconds the picture takes at this size.
-fn seconds_at(document: &Document, status: &Status, [width, height]: [u32; 2]) -> Option<f64> {
+/// About how many seconds this number of samples per pixel takes at this size.
+fn seconds_at(status: &Status, [width, height]: [u32; 2], samples: u64) -> Option<f64> {
     let speed = Some(status.paths_per_second()).filter(|speed| *speed > 0.0)?;
-    let samples = samples_wanted(document, status) as f64;
-    Some(f64::from(width) * f64::from(height) * samples / speed)
+    Some((f64::from(width) * f64::from(height) * samples as f64 / speed).ceil())
 }
 
 /// A size that needs much memory or time, and asks before it is rendered.
@@ -337,9 +388,9 @@ impl LargeSize {
         let bytes_of = |[width, height]: [u32; 2]| {
             Film::bytes(width, height, halves) + 7 * u64::from(width) * u64::from(height)
         };
-        let (bytes, seconds) = (bytes_of(size), seconds_at(document, status, size));
-        let is_slow =
-            |size| seconds_at(document, status, size).is_some_and(|seconds| seconds > LargeSize::SECONDS);
+        let seconds_of = |size| seconds_at(status, size, samples_wanted(document, status));
+        let (bytes, seconds) = (bytes_of(size), seconds_of(size));
+        let is_slow = |size| seconds_of(size).is_some_and(|seconds| seconds > LargeSize::SECONDS);
         if bytes_of(before) >= bytes || bytes <= LargeSize::BYTES && (!is_slow(size) || is_slow(before)) {
             return None;
         }

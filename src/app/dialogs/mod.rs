@@ -8,8 +8,8 @@ mod outcome;
 mod palette;
 pub mod stage_list;
 
-pub use files::{LargeSize, PathField, SaveBox, default_folder, file_name, samples_wanted};
-pub use outcome::{Outcome, Purpose, What};
+pub use files::{LargeSize, PathField, SaveBox, default_folder, samples_wanted};
+pub use outcome::{Outcome, Purpose, Wanted, What};
 
 use crate::app::commands::PanelContext;
 use crate::app::toolkit::Finder;
@@ -60,8 +60,8 @@ impl Dialogs {
         // Each kind has its own size.
         let id = Id::unique(("dialog", std::mem::discriminant(dialog)));
         let mut modal = Modal::new(id).frame(egui::Frame::window(ui.style()));
-        if matches!(dialog, Dialog::Stages(_)) {
-            // It hangs below the bar.
+        if matches!(dialog, Dialog::Stages(_) | Dialog::Palette(_)) {
+            // It hangs below the bar, and is as high as what is found.
             let area = Modal::default_area(id).anchor(Align2::CENTER_TOP, vec2(0.0, 48.0));
             modal = modal.area(area).frame(egui::Frame::menu(ui.style()).inner_margin(8));
             modal = modal.backdrop_color(Color32::TRANSPARENT);

@@ -9,8 +9,8 @@ pub enum Outcome {
     Close,
     /// It closes: the user chose a file.
     Named(Purpose, PathBuf),
-    /// It closes: this is saved, the picture with this size.
-    Save(What, [u32; 2], PathBuf),
+    /// It closes: this is saved.
+    Save(Wanted),
     /// It closes: the picture gets this size.
     Size([u32; 2]),
     /// It closes, and so does the window, at once or when everything is saved.
@@ -19,21 +19,35 @@ pub enum Outcome {
     },
 }
 
+/// The choices of the dialog of saving.
+pub struct Wanted {
+    pub what: What,
+    /// Width and height of the picture.
+    pub size: [u32; 2],
+    /// Frames of an animation, and samples per pixel of each.
+    pub frames: u32,
+    pub samples: u32,
+    /// The file, or the folder of an animation.
+    pub path: PathBuf,
+}
+
 /// The content to save.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum What {
     Picture(OutputFormat),
     Scene,
+    Animation,
 }
 
 impl What {
     /// All of them, with name, use and ending.
-    pub(super) const ALL: [(What, &str, &str, &str); 5] = [
+    pub(super) const ALL: [(What, &str, &str, &str); 6] = [
         (What::Picture(OutputFormat::Png), "PNG picture", "To look at; remembers how it was made", "png"),
         (What::Picture(OutputFormat::P6), "PPM picture (P6)", "The format of the book", "ppm"),
         (What::Picture(OutputFormat::Pfm), "PFM picture", "Linear numbers for other programs", "pfm"),
         (What::Picture(OutputFormat::Exr), "Film (EXR)", "All light and samples; can be resumed", "exr"),
         (What::Scene, "Scene (TOML)", "Text to edit; no picture in it", "toml"),
+        (What::Animation, "Animation", "A folder of pictures, along the bookmarks", ""),
     ];
 
     pub(super) fn ending(self) -> &'static str {

@@ -14,7 +14,8 @@ const USUAL: [Command; 5] =
     [Command::ShowMe, Command::Save, Command::Present, Command::Stages, Command::Help];
 
 /// Fields of the left panel that are found by other words, too.
-const FIELDS: [(&str, &str); 4] = [
+const FIELDS: [(&str, &str); 5] = [
+    ("Scene", "all spheres list find select objects outliner sky colours background light gradient"),
     ("Field of view", "fov angle zoom lens"),
     ("Defocus angle", "blur defocus depth of field dof aperture bokeh"),
     ("Focus distance", "focus sharp"),
@@ -91,7 +92,7 @@ fn found(text: &str, snapshot: &Snapshot) -> Vec<Found> {
     ranked.into_iter().map(|(_, found)| found).collect()
 }
 
-/// Draws the dialog. The list has the same `height`, however many commands match, so that nothing moves.
+/// Draws the dialog, whose list has at most this height.
 pub(super) fn ui(finder: &mut Finder, ui: &mut Ui, height: f32, cx: &PanelContext) -> Outcome {
     ui.set_width(ui.available_width());
     let words = (
@@ -158,6 +159,12 @@ mod tests {
             ("save", Command::Save),
             ("png", Command::Save),
             ("save as", Command::Save),
+            ("new", Command::NewScene),
+            ("sky colours", Command::Field("Scene")),
+            ("find sphere", Command::Field("Scene")),
+            ("animation", Command::SaveAnimation),
+            ("video", Command::SaveAnimation),
+            ("turntable", Command::SaveAnimation),
             ("speed", Command::CompareDevices),
             ("blur", Command::Field("Defocus angle")),
             ("dof", Command::Field("Defocus angle")),

@@ -55,10 +55,9 @@ fn found(typed: &str) -> Vec<Command> {
     if by_name.is_empty() { having(true) } else { by_name }
 }
 
-/// The list at the picture that is shown, or at its end.
-pub fn list(snapshot: &Snapshot, is_at_end: bool) -> Finder {
-    let is_first = |row| if is_at_end { heading_of(row) == LAST_HEADING } else { snapshot.is_on(row) };
-    Finder::at(rows().position(is_first).unwrap_or(0))
+/// The list at the picture that is shown.
+pub fn list(snapshot: &Snapshot) -> Finder {
+    Finder::at(rows().position(|row| snapshot.is_on(row)).unwrap_or(0))
 }
 
 /// Draws the list. Arrow keys go through it, typing leaves what has these words, and Enter chooses.
@@ -92,20 +91,23 @@ pub fn ui(finder: &mut Finder, ui: &mut Ui, height: f32, cx: &PanelContext) -> O
 
 fn row_ui(ui: &mut Ui, row: Command, is_chosen: bool, snapshot: &Snapshot) -> Response {
     let is_done = matches!(row, Command::Stage(stage) if snapshot.model.remembered.done.contains(stage.id));
-    let button = match row {
-        Command::Stage(stage) if let Some(picture) = thumbnail(ui.ctx(), stage) => {
-            let mut words = LayoutJob::default();
-            let number = RichText::new(stage.section).small().weak();
-            let done = RichText::new(if is_done { "  ✔ yours is right\n" } else { "\n" });
-            let done = done.small().color(theme::colours(ui).good);
-            for text in [number, done, RichText::new(stage.title).strong()] {
-                text.append_to(&mut words, ui.style(), FontSelection::Default, Align::Center);
-            }
-            let picture = Image::new((picture.id(), PICTURE));
-            choice(ui, is_chosen, (picture, words, Atom::grow())).min_size(vec2(ui.available_width(), 52.0))
-        }
-        _ => choice(ui, is_chosen, (row.name(), Atom::grow())).min_size(vec2(ui.available_width(), 28.0)),
+    let (id, over, title) = match row {
+        Command::Stage(stage) => (stage.id, stage.section, stage.title),
+        Command::Extreme(case) => (case.id.as_str(), case.family.title, case.title()),
+        _ => ("", "", ""),
     };
+    let mut words = LayoutJob::default();
+    let done = RichText::new(if is_done { "  ✔ yours is right\n" } else { "\n" });
+    let done = done.small().color(theme::colours(ui).good);
+    for text in [RichText::new(over).small().weak(), done, RichText::new(title).strong()] {
+        text.append_to(&mut words, ui.style(), FontSelection::Default, Align::Center);
+    }
+    let picture = thumbnail(ui.ctx(), id).map(|picture| Image::new((picture.id(), PICTURE)));
+    let button = match picture {
+        Some(picture) => choice(ui, is_chosen, (picture, words, Atom::grow())),
+        None => choice(ui, is_chosen, (words, Atom::grow())),
+    };
+    let button = button.min_size(vec2(ui.available_width(), 52.0));
     let response = ui.add(button.frame_when_inactive(is_chosen));
     response.widget_info(|| WidgetInfo::selected(egui::Role::Button, true, is_chosen, row.name()));
     tip(ui, response, row.help(), None)
@@ -113,7 +115,7 @@ fn row_ui(ui: &mut Ui, row: Command, is_chosen: bool, snapshot: &Snapshot) -> Re
 
 macro_rules! pictures {
     ($($id:literal)*) => {
-        /// The small pictures of the stages by id.
+        /// The small pictures of stages and extreme scenes by id.
         const PICTURES: &[(&str, &[u8])] =
             &[$(($id, include_bytes!(concat!("../../../assets/stages/", $id, ".png")))),*];
     };
@@ -123,21 +125,23 @@ pictures!(
     "ppm-tiny" "ppm-gradient" "sky" "red-sphere" "normals" "normals-world" "aliased" "antialiased" "diffuse"
     "diffuse-limited" "shadow-acne" "lambertian-linear" "lambertian-gamma" "gamut" "metal" "metal-fuzzy"
     "glass-refract" "glass-tir" "glass-schlick" "hollow-glass" "three-spheres" "fov-wide" "fov-narrow"
-    "view-distant" "view-close" "defocus" "book"
+    "view-distant" "view-close" "defocus" "book" "file/soap-bubbles" "file/dust" "file/contact" "file/planet-coast"
+    "file/nested" "file/closed-room" "cavity/white-touching-at-1000" "moved/1e5" "scaled/1e-3" "scaled/1e6"
+    "lens/marbles-on-a-planet"
 );
 
-fn image_of(stage: &Stage) -> Option<ColorImage> {
-    let (_, png) = PICTURES.iter().find(|(id, _)| *id == stage.id)?;
+fn image_of(id: &str) -> Option<ColorImage> {
+    let (_, png) = PICTURES.iter().find(|(of, _)| *of == id)?;
     let image = image::load_from_memory(png).ok()?.to_rgb8();
     Some(ColorImage::from_rgb([image.width() as usize, image.height() as usize], image.as_raw()))
 }
 
-/// The small picture of a stage, which is loaded once.
-fn thumbnail(context: &Context, stage: &Stage) -> Option<TextureHandle> {
-    let place = Id::unique(("picture of stage", stage.id));
+/// The small picture of a stage or an extreme scene, which is loaded once.
+fn thumbnail(context: &Context, id: &str) -> Option<TextureHandle> {
+    let place = Id::unique(("small picture", id));
     let loaded = context.data(|data| data.get_temp(place));
     loaded.or_else(|| {
-        let handle = context.load_texture(stage.id, image_of(stage)?, egui::TextureOptions::LINEAR);
+        let handle = context.load_texture(id, image_of(id)?, egui::TextureOptions::LINEAR);
         context.data_mut(|data| data.insert_temp(place, handle.clone()));
         Some(handle)
     })
@@ -150,8 +154,11 @@ mod tests {
     #[test]
     fn every_stage_has_its_picture_and_is_found() {
         for stage in Stage::ALL {
-            assert!(image_of(stage).is_some(), "{}", stage.id);
+            assert!(image_of(stage.id).is_some(), "{}", stage.id);
             assert!(found(stage.section).contains(&Command::Stage(stage)), "{}", stage.id);
+        }
+        for case in shown_cases() {
+            assert!(image_of(&case.id).is_some(), "{}", case.id);
         }
         assert_eq!(rows().count(), Stage::ALL.len() + shown_cases().len());
         assert!(found("schl") == [Command::Stage(Stage::find("glass-schlick").unwrap())]);

@@ -5,6 +5,7 @@ use crate::job::recipe::{Recipe, file};
 use crate::job::render::RenderSettings;
 use crate::progressive::Stop;
 use crate::scene::Camera;
+use crate::scene::animation::Keyframe;
 use crate::stages::Stage;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -38,6 +39,8 @@ struct Step {
     settings: RenderSettings,
     has_own_size: bool,
     is_from_file: bool,
+    #[serde(default)]
+    bookmarks: Vec<(u32, Camera)>,
     /// Samples, seconds, error.
     stop: (Option<u64>, Option<f64>, Option<f64>),
 }
@@ -64,7 +67,17 @@ pub fn to_text(documents: &[Document]) -> String {
         let scene = document.has_changed_scene();
         let scene = scene.then(|| place(Arc::as_ptr(&checked).addr(), &|| document.recipe()));
         let stop = (samples, seconds, noise);
-        edits.steps.push(Step { origin: from, scene, camera, settings, has_own_size, is_from_file, stop });
+        let bookmarks = document.keyframes.iter().map(|keyframe| (keyframe.frame, keyframe.camera)).collect();
+        edits.steps.push(Step {
+            origin: from,
+            scene,
+            camera,
+            settings,
+            has_own_size,
+            is_from_file,
+            bookmarks,
+            stop,
+        });
     }
     serde_json::to_string(&edits).unwrap_or_default()
 }
@@ -96,6 +109,11 @@ pub fn read(path: &Path) -> Vec<Document> {
             checked: checked.unwrap_or_else(|| Arc::clone(&origin.scene)),
             origin,
             camera: step.camera,
+            keyframes: step
+                .bookmarks
+                .iter()
+                .map(|(frame, camera)| Keyframe { frame: *frame, camera: *camera })
+                .collect(),
             settings: step.settings,
             has_own_size: step.has_own_size,
             is_from_file: step.is_from_file,
@@ -127,6 +145,7 @@ mod tests {
             Origin::of_stage(Stage::find("metal").unwrap()),
             Origin::new(file::load(&scene).unwrap(), Source::File(scene.clone())),
             Origin::of_builtin(Recipe::builtin("metals").unwrap()),
+            Origin::new_scene(),
             Origin::new(Recipe { name: "mine".to_owned(), ..cover }, Source::Embedded),
         ];
         for origin in origins {
@@ -136,6 +155,7 @@ mod tests {
             moved.camera.look_from.x += 1.0 / 3.0;
             (moved.camera.focus_distance, moved.stop) = (Some(0.7), Stop::at_samples(77));
             moved.give_size([160, 90]);
+            moved.add_bookmark();
             let before = [first, edited, moved];
             let text = to_text(&before);
             std::fs::write(&path, &text).unwrap();
@@ -148,6 +168,7 @@ mod tests {
                 assert_eq!(after.scene(), before.scene());
                 assert_eq!((after.camera, after.settings), (before.camera, before.settings));
                 assert_eq!((after.stop, after.has_own_size), (before.stop, before.has_own_size));
+                assert_eq!(after.keyframes, before.keyframes);
             }
             assert!(Arc::ptr_eq(&after[0].origin, &after[2].origin), "{name}");
             assert!(Arc::ptr_eq(&after[1].checked, &after[2].checked) && !after[0].has_changed_scene());

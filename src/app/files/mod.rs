@@ -10,16 +10,17 @@ use crate::app::model::Document;
 use crate::app::toolkit::{Answers, Toasts};
 use crate::app::tracing::subject::Subject;
 use crate::backends::BackendChoice;
-use crate::cli::{CompanionOptions, ProgressChoice};
+use crate::batch::{Event, Studio, write_frames};
+use crate::cli::{CompanionOptions, FramesOptions, ProgressChoice};
 use crate::denoise::Denoised;
 use crate::film::Film;
 use crate::job::output::{Description, OutputFormat, is_named_picture, key, write_image};
 use crate::job::recipe::file;
 use crate::job::render::RenderJob;
-use crate::job::saved::{self, OpenError, Opened, SavedFilm};
+use crate::job::saved::{OpenError, Opened, SavedFilm, open, resume};
 use crate::page::companion;
 use crate::progressive::describe::describe;
-use crate::progressive::{Phase, Plan, Progressive, RenderRequest, Status, Stop};
+use crate::progressive::{Phase, Status};
 use crate::render_cpu::CpuOptions;
 use crate::system::console;
 use crate::system::files::{cache_directory, replace_file};
@@ -29,7 +30,7 @@ use scene_file::SceneFile;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
 /// The film that the window resumes at startup.
@@ -42,12 +43,24 @@ pub struct Resumed {
     pub film: SavedFilm,
 }
 
-/// A picture that is rendered at its own size, to be saved.
-struct Sized {
-    progressive: Progressive,
-    document: Document,
-    samples: u64,
-    named: (OutputFormat, PathBuf),
+/// Something that was written or made.
+pub enum Made {
+    File(PathBuf),
+    /// An animation of this number of frames in this folder.
+    Frames(u32, PathBuf),
+    /// The companion, the full one or not.
+    Companion(bool),
+}
+
+/// Something that takes long to make in the background.
+struct Making {
+    interrupt: Arc<Interrupt>,
+    /// The work, in words.
+    words: String,
+    /// How much of it is done, if that is known.
+    percent: Arc<AtomicU32>,
+    /// The name of the file that would be lost.
+    name: Option<String>,
 }
 
 /// Files being read and written. The answers are the path, or why it failed.
@@ -61,20 +74,18 @@ pub struct Files {
     /// To be copied once there are samples.
     pub pending_copy: bool,
     /// Files that were written.
-    pub saved: Answers<PathBuf>,
+    saved: Answers<Made>,
+    /// Results of work in the background.
+    made: Answers<Made>,
+    making: Option<Making>,
     /// Files that were opened, and pictures of other programs, which say nothing about how they were made.
     pub opened: Answers<Result<Opened, PathBuf>>,
     /// Films to resume.
     pub resumed: Answers<Resumed>,
     /// Pictures for the clipboard, and what they are, in words.
     pub copied: Answers<(ColorImage, String)>,
-    /// Whether the companion that was written is the full one.
-    pub companions: Answers<bool>,
     /// Where the companion is written, if not in the usual folder.
     pub companion: Option<PathBuf>,
-    /// Stops the companion that is being written.
-    companion_stop: Option<Arc<Interrupt>>,
-    sized: Option<Sized>,
 }
 
 impl Files {
@@ -95,23 +106,76 @@ impl Files {
         named: (OutputFormat, PathBuf),
     ) -> Result<(), String> {
         let job = document.job(1).map_err(|error| error.to_string())?;
-        let mut progressive = Progressive::spawn().map_err(|error| error.to_string())?;
-        let waker = context.clone();
-        progressive.set_notice(move || waker.request_repaint());
-        progressive.start(RenderRequest::new(job, backend, Plan::until(Stop::at_samples(samples))));
-        self.sized = Some(Sized { progressive, document, samples, named });
+        let ([width, height], name) = (document.size(), name_of(&named.1));
+        let words = format!("Rendering {width} × {height} to save it");
+        self.make(context, words, Some(name), move |interrupt, look| {
+            let mut studio = Studio::open(&backend, interrupt).map_err(|failure| failure.to_string())?;
+            let (status, film) = studio.render(job, Studio::plan(samples), None, |event| {
+                if let Event::Status(_, status) = event {
+                    look(status.samples_per_pixel as f64 / samples.max(1) as f64);
+                }
+            });
+            let film = film.filter(|film| film.sample_count() > 0).ok_or_else(|| match &status.phase {
+                Phase::Failed(reason) => reason.clone(),
+                _ => "nothing was traced".to_owned(),
+            })?;
+            let describe = describer(&document, &status, Some(0.0));
+            write(&film, None, &document, describe, named)
+        })
+    }
+
+    /// Renders the frames of an animation that are missing.
+    ///
+    /// # Errors
+    /// Why it cannot begin.
+    pub fn save_frames(&mut self, context: &Context, options: FramesOptions) -> Result<(), String> {
+        let (count, folder) = (options.frames.end, name_of(&options.names.directory));
+        let words = format!("Rendering {count} frames for {folder}");
+        self.make(context, words, Some(folder), move |interrupt, look| {
+            let look = |done| look(f64::from(done) / f64::from(count));
+            write_frames(&options, interrupt, look).map_err(|failure| failure.to_string())?;
+            Ok(Made::Frames(count, options.names.directory))
+        })
+    }
+
+    /// Makes something in the background, which can be stopped. `work` tells its share that is done.
+    fn make(
+        &mut self,
+        context: &Context,
+        words: String,
+        name: Option<String>,
+        work: impl FnOnce(&Interrupt, &dyn Fn(f64)) -> Result<Made, String> + Send + 'static,
+    ) -> Result<(), String> {
+        if let Some(making) = &self.making {
+            return Err(format!("wait until this has ended, or stop it: {}", making.words));
+        }
+        let (interrupt, percent) = (Arc::new(Interrupt::unheard()), Arc::new(AtomicU32::new(0)));
+        self.making =
+            Some(Making { interrupt: Arc::clone(&interrupt), words, percent: Arc::clone(&percent), name });
+        let look = move |share: f64| percent.store((100.0 * share) as u32, Ordering::Relaxed);
+        self.made.ask("files", context, move || work(&interrupt, &look));
         Ok(())
     }
 
+    /// Stops what is made in the background. Its answer does not matter then.
     pub fn stop_saving(&mut self) {
-        (self.sized, self.pending_save) = (None, None);
+        self.pending_save = None;
+        if let Some(making) = self.making.take() {
+            making.interrupt.flag().store(true, Ordering::Relaxed);
+            self.made = Answers::default();
+        }
+    }
+
+    /// The oldest result that has not been taken yet, or why there is none.
+    pub fn take_made(&mut self) -> Option<Result<Made, String>> {
+        let made = self.made.take().inspect(|_| self.making = None);
+        made.or_else(|| self.saved.take())
     }
 
     /// The name of the file that is saved once its picture has been rendered.
     pub fn unsaved(&self) -> Option<String> {
-        let path = self.sized.as_ref().map(|sized| &sized.named.1);
-        let path = path.or(self.pending_save.as_ref().map(|(_, path)| path))?;
-        Some(path.file_name().unwrap_or(path.as_os_str()).display().to_string())
+        let name = self.making.as_ref().and_then(|making| making.name.clone());
+        name.or_else(|| Some(name_of(&self.pending_save.as_ref()?.1)))
     }
 
     /// Whether something is still rendered to be saved, or written.
@@ -124,6 +188,7 @@ impl Files {
         if let Some(name) = self.unsaved() {
             console::note(&format!("weekender: {name} was not saved: its picture was still being rendered"));
         }
+        self.stop_saving();
         while let Some(outcome) = self.saved.wait() {
             outcome
                 .err()
@@ -132,45 +197,24 @@ impl Files {
         }
     }
 
-    /// Reports how far the picture is that is rendered to be saved, and saves it at the end.
-    pub fn follow_sized(&mut self, context: &Context, toasts: &mut Toasts) {
-        let Some(sized) = &self.sized else { return };
-        let status = sized.progressive.status();
+    /// Reports how far something is that is made in the background.
+    pub fn follow_making(&mut self, context: &Context, toasts: &mut Toasts) {
         toasts.withdraw(Command::StopSaving);
-        if !status.phase.is_over() {
-            let [width, height] = sized.document.size();
-            let percent = 100 * status.samples_per_pixel.min(sized.samples) / sized.samples.max(1);
-            let words = format!("Rendering {width} × {height} to save it, {percent} %");
-            toasts.offer(words, &[Command::StopSaving]);
-            context.request_repaint_after(Duration::from_millis(250));
-            return;
-        }
-        let Some(Sized { progressive, document, named: (format, path), .. }) = self.sized.take() else {
-            return;
+        let Some(Making { words, percent, .. }) = &self.making else { return };
+        let words = match percent.load(Ordering::Relaxed) {
+            0 => format!("{words}…"),
+            percent => format!("{words}, {percent} %"),
         };
-        let work = move || {
-            let film = progressive.finish().filter(|film| film.sample_count() > 0);
-            let film = film.ok_or_else(|| match &status.phase {
-                Phase::Failed(reason) => reason.clone(),
-                _ => "nothing was traced".to_owned(),
-            })?;
-            let describe = describer(&document, &status, Some(0.0));
-            write(&film, None, &document, describe, (format, path))
-        };
-        self.saved.ask("files", context, work);
+        toasts.offer(words, &[Command::StopSaving]);
+        context.request_repaint_after(Duration::from_millis(250));
     }
 
     /// Writes the companion, a quick one with small figures or the full one.
     ///
     /// # Errors
-    /// If there is no place for it.
-    pub fn write_companion(&mut self, context: &Context, is_quick: bool) -> Result<(), &'static str> {
-        if self.companion_stop.is_some() {
-            return Ok(());
-        }
+    /// Why it cannot begin.
+    pub fn write_companion(&mut self, context: &Context, is_quick: bool) -> Result<(), String> {
         let out = self.companion_folder().ok_or("There is no home directory to write the companion in")?;
-        let interrupt = Arc::new(Interrupt::unheard());
-        self.companion_stop = Some(Arc::clone(&interrupt));
         let options = CompanionOptions {
             out,
             source: None,
@@ -179,27 +223,15 @@ impl Files {
             progress: ProgressChoice::Off,
             backend: BackendChoice::Cpu(CpuOptions::default()),
         };
-        let work = move || {
-            let written = companion::write(&options, &interrupt);
-            written.map(|_| !is_quick).map_err(|failure| failure.to_string())
-        };
-        self.companions.ask("companion", context, work);
-        Ok(())
+        let time = if is_quick { "about 3 s" } else { "some minutes" };
+        self.make(context, format!("Writing the companion, {time}"), None, move |interrupt, _| {
+            let written = companion::write(&options, interrupt);
+            written.map(|_| Made::Companion(!is_quick)).map_err(|failure| failure.to_string())
+        })
     }
 
     pub fn companion_folder(&self) -> Option<PathBuf> {
         self.companion.clone().or_else(|| Some(cache_directory()?.join("companion")))
-    }
-
-    pub fn stop_companion(&mut self) {
-        if let Some(interrupt) = &self.companion_stop {
-            interrupt.flag().store(true, Ordering::Relaxed);
-        }
-    }
-
-    /// Notes that the companion was written. Returns whether it was stopped before.
-    pub fn end_companion(&mut self) -> bool {
-        self.companion_stop.take().is_some_and(|interrupt| interrupt.is_set())
     }
 
     /// Saves and copies what was asked for, once there are samples.
@@ -244,14 +276,14 @@ impl Files {
             replace_file(&path, |writer| writer.write_all(text.as_bytes()))
                 .map_err(|error| error.to_string())?;
             checked.note_file(&std::path::absolute(&path).unwrap_or_else(|_| path.clone()));
-            Ok(path)
+            Ok(Made::File(path))
         };
         self.saved.ask("files", context, work);
     }
 
     /// Reads a scene file, picture or film.
     pub fn open(&mut self, context: &Context, path: PathBuf) {
-        let work = move || match saved::open(&path) {
+        let work = move || match open(&path) {
             Err(_) if !path.exists() => {
                 let [name, folder] = [path.file_name(), path.parent().map(Path::as_os_str)]
                     .map(|part| part.unwrap_or_default().display().to_string());
@@ -270,7 +302,7 @@ impl Files {
     /// Reads the film of `job`, which is the job of `document`.
     pub fn resume(&mut self, context: &Context, path: PathBuf, job: RenderJob, document: &Document) {
         let begun = document.clone();
-        let work = move || match saved::resume(&path, &job) {
+        let work = move || match resume(&path, &job) {
             Ok(film) => Ok(Resumed { path, begun, film }),
             Err(error) => Err(error.to_string()),
         };
@@ -284,7 +316,7 @@ fn write(
     document: &Document,
     describe: impl FnOnce(&Film) -> Description,
     (format, path): (OutputFormat, PathBuf),
-) -> Result<PathBuf, String> {
+) -> Result<Made, String> {
     if film.sample_count() == 0 {
         return Err("nothing has been traced yet; try again in a moment".to_owned());
     }
@@ -296,7 +328,12 @@ fn write(
         description.set(key::DENOISED, denoised.error.words());
     }
     let written = write_image(&path, film, document.rules().transfer, &description);
-    written.map(|()| path).map_err(|error| error.to_string())
+    written.map(|()| Made::File(path)).map_err(|error| error.to_string())
+}
+
+/// The last part of a path.
+pub fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).display().to_string()
 }
 
 /// Makes the description of a film of the document, whose render has this status.

@@ -1,6 +1,6 @@
 //! Tracks what the user has changed since the previous frame: moves, gestures and undo steps.
 
-use super::Document;
+use super::{Document, Source};
 use eframe::egui::Context;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -51,6 +51,11 @@ impl Changes {
     /// What undo and redo would change, in words.
     pub fn labels(&self, document: &Document) -> [Option<&'static str>; 2] {
         [self.earlier(document), self.later(document)].map(|other| Some(document.difference(other?)))
+    }
+
+    /// The last state of a picture from this source.
+    pub fn last_of(&self, source: &Source) -> Option<&Document> {
+        [&self.last].into_iter().chain(self.done.iter().rev()).find(|done| done.origin.source == *source)
     }
 
     fn earlier(&self, document: &Document) -> Option<&Document> {

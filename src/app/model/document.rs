@@ -5,6 +5,7 @@ use crate::job::recipe::Recipe;
 use crate::job::render::{JobError, RenderJob, RenderSettings, SAMPLE_LIMIT};
 use crate::measure::stress::Case;
 use crate::progressive::{EndReason, Phase, Status, Stop};
+use crate::scene::animation::Keyframe;
 use crate::scene::{Camera, Pick, Scene};
 use crate::stages::{Rules, Shading, Stage};
 use std::sync::Arc;
@@ -23,6 +24,8 @@ pub struct Document {
     pub checked: Arc<CheckedScene>,
     /// The camera, as edited.
     pub camera: Camera,
+    /// The bookmarks, in their order.
+    pub keyframes: Vec<Keyframe>,
     /// Size, depth, sampler, seed, halves.
     pub settings: RenderSettings,
     /// The size is the picture's own: it follows neither the viewport nor the book.
@@ -41,6 +44,7 @@ impl PartialEq for Document {
             && Arc::ptr_eq(&self.checked, &other.checked)
             && (self.camera, self.stop, self.has_own_size) == (other.camera, other.stop, other.has_own_size)
             && self.chosen_settings() == other.chosen_settings()
+            && self.keyframes == other.keyframes
     }
 }
 
@@ -59,6 +63,7 @@ impl Document {
     pub fn of(origin: Arc<Origin>) -> Self {
         let Recipe { camera, settings, .. } = origin.recipe;
         Document {
+            keyframes: origin.recipe.keyframes.clone(),
             stop: origin.usual_stop(),
             checked: Arc::clone(&origin.scene),
             has_own_size: origin.keeps_size(),
@@ -73,7 +78,8 @@ impl Document {
     pub fn of_film(recipe: &Recipe, stage: Option<&'static Stage>) -> Self {
         let document = Document::new(Origin::guess(recipe, stage));
         let Recipe { camera, settings, .. } = *recipe;
-        Document { camera, settings, has_own_size: true, is_from_file: true, ..document }
+        let keyframes = recipe.keyframes.clone();
+        Document { camera, keyframes, settings, has_own_size: true, is_from_file: true, ..document }
     }
 
     /// Resets everything to the origin's values. A size that follows the viewport or the book stays.
@@ -116,6 +122,8 @@ impl Document {
             "tracer"
         } else if self.stop != other.stop {
             "samples"
+        } else if self.keyframes != other.keyframes {
+            "bookmarks"
         } else {
             "size"
         }
@@ -131,10 +139,10 @@ impl Document {
         !Arc::ptr_eq(&self.checked, &self.origin.scene)
     }
 
-    /// Whether scene, camera or settings are not the origin's, apart from size and stop.
+    /// Whether scene, camera or settings are not the origin's, apart from size, stop and bookmarks.
     pub fn is_changed(&self) -> bool {
         let unchanged = Document::of(Arc::clone(&self.origin));
-        !matches!(self.difference(&unchanged), "size" | "samples")
+        !matches!(self.difference(&unchanged), "size" | "samples" | "bookmarks")
     }
 
     /// What `camera` sees at a place in the picture, `0..=1` from the upper left.
@@ -170,6 +178,7 @@ impl Document {
         match &self.origin.source {
             Source::Stage(stage) => format!("{} {}", stage.section, stage.title),
             Source::Extreme(case) => case.title().to_owned(),
+            Source::New => "New scene".to_owned(),
             Source::File(path) => path.file_name().unwrap_or(path.as_os_str()).display().to_string(),
             _ => self.origin.recipe.name.clone(),
         }
@@ -218,6 +227,7 @@ impl Document {
             name: self.name(),
             scene: Arc::clone(self.checked.scene()),
             camera: self.acting_camera(),
+            keyframes: self.keyframes.clone(),
             settings: self.settings,
             samples_per_pixel: self.stop.samples.unwrap_or(origin.samples_per_pixel),
             ..origin.clone()

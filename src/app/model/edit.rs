@@ -48,28 +48,21 @@ pub fn kind_word(material: &Material) -> &'static str {
 const ADDED: &str = "added";
 
 impl Edit {
-    /// The edited copy of `scene`, and the sphere that is selected then. An edit of a sphere that does not exist changes
-    /// nothing.
-    pub fn apply(&self, scene: &Scene) -> (Scene, Option<usize>) {
-        let mut scene = scene.clone();
-        let selected = match *self {
-            Edit::Change(index, body) => change(&mut scene, index, body).map(|()| index),
+    /// Edits `scene`. Returns the sphere that is selected then. An edit of a sphere that does not exist changes nothing.
+    pub fn apply(&self, scene: &mut Scene) -> Option<usize> {
+        match *self {
+            Edit::Change(index, body) => return change(scene, index, body).map(|()| index),
             Edit::Add(Body { center, radius, material }) => {
-                let name = free_name(&scene, ADDED);
-                let material = scene.add_material(name, material);
+                let known = scene.materials.iter().position(|named| named.material == material);
+                let own = |scene: &mut Scene| scene.add_material(free_name(scene, ADDED), material);
+                let material = known.unwrap_or_else(|| own(scene));
                 scene.add_sphere(center, radius, material);
-                Some(scene.spheres.len() - 1)
+                return Some(scene.spheres.len() - 1);
             }
-            Edit::Delete(index) => {
-                delete(&mut scene, index);
-                None
-            }
-            Edit::Sky(sky) => {
-                scene.sky = sky;
-                None
-            }
-        };
-        (scene, selected)
+            Edit::Delete(index) => delete(scene, index),
+            Edit::Sky(sky) => scene.sky = sky,
+        }
+        None
     }
 }
 
@@ -143,6 +136,13 @@ mod tests {
         scene
     }
 
+    /// The edited scene, and the sphere that is selected then.
+    fn applied(edit: Edit, scene: &Scene) -> (Scene, Option<usize>) {
+        let mut scene = scene.clone();
+        let selected = edit.apply(&mut scene);
+        (scene, selected)
+    }
+
     const METAL: Material = Material::Metal { albedo: DVec3::ONE, fuzz: 0.5 };
 
     #[test]
@@ -150,13 +150,13 @@ mod tests {
         let before = scene();
         let denser = Material::Dielectric { refraction_index: 2.4 };
         let body = Body { material: denser, ..Body::of(&before, 1).unwrap() };
-        let (after, selected) = Edit::Change(1, body).apply(&before);
+        let (after, selected) = applied(Edit::Change(1, body), &before);
         after.validate().unwrap();
         assert_eq!((selected, Body::of(&after, 1)), (Some(1), Some(body)));
         assert_eq!(Body::of(&after, 2), Body::of(&before, 2), "shares its material with the other");
         assert_eq!(after.materials[2].name, "glass-2");
         // Now the sphere has its own material, so no more are added.
-        let (again, _) = Edit::Change(1, Body { material: METAL, ..body }).apply(&after);
+        let (again, _) = applied(Edit::Change(1, Body { material: METAL, ..body }), &after);
         assert_eq!((again.materials.len(), again.materials[2].name.as_str()), (3, "metal"));
     }
 
@@ -175,25 +175,26 @@ mod tests {
     fn spheres_are_added_and_deleted() {
         let before = scene();
         let body = Body { center: DVec3::Z, radius: 0.25, material: METAL };
-        let (more, selected) = Edit::Add(body).apply(&before);
+        let (more, selected) = applied(Edit::Add(body), &before);
         assert_eq!((selected, Body::of(&more, 3)), (Some(3), Some(body)));
-        let (twice, _) = Edit::Add(body).apply(&more);
+        let (twice, _) = applied(Edit::Add(body), &more);
         twice.validate().unwrap();
-        let (fewer, selected) = Edit::Delete(0).apply(&before);
+        assert_eq!((twice.spheres.len(), twice.materials.len()), (5, 3), "the same material has one name");
+        let (fewer, selected) = applied(Edit::Delete(0), &before);
         fewer.validate().unwrap();
         assert_eq!((selected, fewer.materials.len()), (None, 1));
         assert_eq!(Body::of(&fewer, 0), Body::of(&before, 1));
         for beyond in [3, 9] {
-            assert_eq!(Edit::Delete(beyond).apply(&before), (before.clone(), None));
+            assert_eq!(applied(Edit::Delete(beyond), &before), (before.clone(), None));
         }
-        assert_eq!(Edit::Change(9, body).apply(&before), (before, None));
+        assert_eq!(applied(Edit::Change(9, body), &before), (before, None));
     }
 
     #[test]
     fn every_sphere_of_a_built_in_scene_can_be_deleted() {
         let mut scene = (*Recipe::builtin("book").unwrap().scene).clone();
         while !scene.spheres.is_empty() {
-            scene = Edit::Delete(scene.spheres.len() / 2).apply(&scene).0;
+            scene = applied(Edit::Delete(scene.spheres.len() / 2), &scene).0;
             scene.validate().unwrap();
         }
         assert!(scene.materials.is_empty());
@@ -210,32 +211,32 @@ mod tests {
         for index in 0..3 {
             let old = Body::of(&before, index).unwrap();
             let body = Body { center: DVec3::new(1.0, 2.0, 3.0), radius: 0.25, ..old };
-            let (after, _) = Edit::Change(index, body).apply(&before);
+            let (after, _) = applied(Edit::Change(index, body), &before);
             assert_eq!((Body::of(&after, index), &after.materials), (Some(body), &before.materials));
         }
         let body = Body { material: green, ..Body::of(&before, 0).unwrap() };
-        let (after, _) = Edit::Change(0, body).apply(&before);
+        let (after, _) = applied(Edit::Change(0, body), &before);
         assert_eq!((Body::of(&after, 0), names(&after)), (Some(body), names(&before)));
         // A shared material stays as it is; the name of another kind is new.
         let mut taken = before.clone();
         taken.add_material("metal", METAL);
         let body = Body { material: METAL, ..Body::of(&before, 2).unwrap() };
-        let (after, _) = Edit::Change(2, body).apply(&taken);
+        let (after, _) = applied(Edit::Change(2, body), &taken);
         after.validate().unwrap();
         assert_eq!((Body::of(&after, 2), Body::of(&after, 1)), (Some(body), Body::of(&before, 1)));
         assert_eq!(names(&after), ["grey", "glass", "metal", "metal-2"]);
         // A name that says nothing of the kind stays.
         let body = Body { material: METAL, ..Body::of(&before, 0).unwrap() };
-        assert_eq!(names(&Edit::Change(0, body).apply(&before).0), ["grey", "glass"]);
+        assert_eq!(names(&applied(Edit::Change(0, body), &before).0), ["grey", "glass"]);
     }
 
     #[test]
     fn a_shared_material_stays_until_its_last_sphere_is_deleted() {
         let before = scene();
-        let (once, _) = Edit::Delete(1).apply(&before);
+        let (once, _) = applied(Edit::Delete(1), &before);
         assert_eq!((once.materials.len(), once.spheres.len()), (2, 2));
         assert_eq!([0, 1].map(|index| Body::of(&once, index)), [0, 2].map(|index| Body::of(&before, index)));
-        let (twice, _) = Edit::Delete(1).apply(&once);
+        let (twice, _) = applied(Edit::Delete(1), &once);
         assert_eq!((twice.materials.len(), Body::of(&twice, 0)), (1, Body::of(&before, 0)));
     }
 }

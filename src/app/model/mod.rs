@@ -1,6 +1,7 @@
 //! The model of the window: the document, the view, the device, and the remembered settings. It does not depend on
 //! widgets or drawing.
 
+pub mod animation;
 pub mod changes;
 mod checked;
 mod command_line;
@@ -27,7 +28,7 @@ pub use edit::{Body, Edit, kind_word};
 pub use kept::{Kept, KeptList};
 pub use origin::{Origin, Source};
 pub use partner::Partner;
-pub use remembered::{Bookmark, Dock, Remembered, Stored, Tab};
+pub use remembered::{Dock, Remembered, Stored, Tab};
 pub use show::{Channel, Show, Tone};
 pub use sizing::Sizing;
 pub use state::{Model, Presentation};

@@ -1,10 +1,13 @@
 //! The origin of a picture.
 
 use super::CheckedScene;
-use crate::job::recipe::Recipe;
+use crate::job::recipe::{DEFAULT_SAMPLES_PER_PIXEL, Recipe};
+use crate::job::render::RenderSettings;
 use crate::measure::stress::{Case, by_the_book};
 use crate::progressive::Stop;
-use crate::stages::{Shading, Stage, SurfaceRule};
+use crate::scene::{Camera, Material, Scene};
+use crate::stages::{Rules, Shading, Stage, SurfaceRule};
+use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -13,6 +16,8 @@ use std::sync::Arc;
 pub enum Source {
     /// A stage of the book.
     Stage(&'static Stage),
+    /// A new scene, which is in no file.
+    New,
     /// A built-in scene. The recipe has its name.
     Builtin,
     /// A scene file.
@@ -53,6 +58,28 @@ impl Origin {
         Origin::of_stage(Stage::ALL.last().unwrap_or(&Stage::ALL[0]))
     }
 
+    /// A new scene: a ball on the ground, which the camera looks at.
+    pub fn new_scene() -> Self {
+        let mut scene = Scene::default();
+        for (name, albedo, radius, y) in
+            [("ground", DVec3::splat(0.5), 1000.0, -1000.0), ("ball", DVec3::new(0.8, 0.3, 0.2), 1.0, 1.0)]
+        {
+            let material = scene.add_material(name, Material::Lambertian { albedo });
+            scene.add_sphere(DVec3::Y * y, radius, material);
+        }
+        let look_from = DVec3::new(3.0, 2.5, 9.0);
+        let recipe = Recipe {
+            name: "scene".to_owned(),
+            scene: Arc::new(scene),
+            camera: Camera { look_from, look_at: DVec3::Y, vfov_degrees: 25.0, ..Camera::BOOK },
+            keyframes: Vec::new(),
+            settings: RenderSettings::default(),
+            rules: Rules::FINISHED,
+            samples_per_pixel: DEFAULT_SAMPLES_PER_PIXEL,
+        };
+        Origin::new(recipe, Source::New)
+    }
+
     /// The origin of a built-in scene. One that is also a stage is opened as that stage.
     pub fn of_builtin(recipe: Recipe) -> Self {
         match Stage::find(&recipe.name) {
@@ -89,6 +116,10 @@ impl Origin {
         if let Some(stage) = stage.filter(|stage| is_same(&stage.recipe())) {
             return Origin::of_stage(stage);
         }
+        let new = Origin::new_scene();
+        if recipe.name == new.recipe.name && is_same(&new.recipe) {
+            return new;
+        }
         match Recipe::builtin(&recipe.name) {
             Some(builtin) if is_same(&builtin) => Origin::new(builtin, Source::Builtin),
             _ => Origin::new(recipe.clone(), Source::Embedded),
@@ -119,7 +150,7 @@ impl Origin {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stages::{Rules, Transfer};
+    use crate::stages::Transfer;
 
     #[test]
     fn pictures_without_chance_end_with_their_samples() {

@@ -1,7 +1,6 @@
 //! Settings that the window keeps from one run to the next.
 
 use super::{Device, Sizing, ViewState, device};
-use crate::scene::Camera;
 use eframe::Storage;
 use eframe::egui::ThemePreference;
 use serde::{Deserialize, Serialize};
@@ -31,14 +30,6 @@ pub enum Tab {
     Controls,
 }
 
-/// A saved camera.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Bookmark {
-    /// The bookmark's name.
-    pub name: String,
-    pub camera: Camera,
-}
-
 /// Settings of the window, as opposed to those of the picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -63,8 +54,6 @@ pub struct Remembered {
     pub lanes: Option<usize>,
     /// Number of threads; `None` for as many as leave the window responsive.
     pub threads: Option<usize>,
-    /// Saved cameras.
-    pub bookmarks: Vec<Bookmark>,
     /// The files that were opened or saved last, newest first.
     pub recent: Vec<PathBuf>,
     /// The picture of another program that is being checked.
@@ -90,7 +79,6 @@ impl Default for Remembered {
             device: Device::Cpu,
             lanes: None,
             threads: None,
-            bookmarks: Vec::new(),
             recent: Vec::new(),
             mine: None,
             mine_stage: None,
@@ -160,7 +148,6 @@ impl Remembered {
         // A window that opens without any panel would confuse the user.
         self.has_panels = true;
         self.recent.truncate(RECENT_LIMIT);
-        self.bookmarks.retain(|bookmark| bookmark.camera.validate().is_ok());
         self
     }
 }
@@ -171,20 +158,9 @@ mod tests {
 
     #[test]
     fn impossible_settings_are_not_remembered() {
-        let mut broken = Camera::BOOK;
-        broken.look_at = broken.look_from;
-        let strange = Remembered {
-            lanes: Some(7),
-            threads: Some(1_000_000),
-            bookmarks: vec![
-                Bookmark { name: "a".into(), camera: Camera::BOOK },
-                Bookmark { name: "b".into(), camera: broken },
-            ],
-            ..Remembered::default()
-        };
+        let strange = Remembered { lanes: Some(7), threads: Some(1_000_000), ..Remembered::default() };
         let mended = strange.mended();
-        assert_eq!((mended.lanes, mended.threads, mended.bookmarks.len()), (None, None, 1));
-        assert_eq!(mended.bookmarks[0].camera, Camera::BOOK);
+        assert_eq!((mended.lanes, mended.threads), (None, None));
     }
 
     #[test]

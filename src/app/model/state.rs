@@ -1,5 +1,6 @@
 //! Everything that the user has chosen.
 
+use super::animation::Play;
 use super::{Device, DeviceOptions, Document, Mode, Partner, Remembered, Show, Tab, ViewState};
 use crate::backends::BackendChoice;
 use crate::job::render::SamplerKind;
@@ -38,6 +39,8 @@ pub struct Model {
     pub devices: DeviceOptions,
     /// Whether tracing is paused.
     pub is_paused: bool,
+    /// The animation that is played.
+    pub playing: Option<Play>,
     /// Whether the window is in full-screen mode.
     pub is_full_screen: bool,
     /// Whether the card with the first steps is shown.

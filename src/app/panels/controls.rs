@@ -1,5 +1,6 @@
 //! The left panel: camera, lens, sphere, size and samples, tracer.
 
+use super::spheres;
 use crate::app::commands::{Command, PanelContext};
 use crate::app::model::spheres::Selected;
 use crate::app::model::{Body, Device, Document, Edit, Remembered, Sizing, core_count, lane_counts};
@@ -9,6 +10,7 @@ use crate::app::toolkit::widgets::{
 };
 use crate::job::render::{DEPTH_LIMIT, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::progressive::Stop;
+use crate::progressive::describe::counted;
 use crate::scene::{
     Camera, DEFOCUS_LIMIT_DEGREES, FOCUS_LIMITS, LENGTH_LIMIT, Material, RADIUS_LIMITS,
     REFRACTION_INDEX_LIMITS, VFOV_LIMITS_DEGREES,
@@ -31,9 +33,9 @@ pub fn ui(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx:
     if has_rays {
         camera(ui, document);
         lens(ui, document);
+        scene(ui, document, cx);
         sphere(ui, document, cx);
         panel_line(ui);
-        sky(ui, document, cx);
     }
     ui.spacing_mut().item_spacing.y = 0.0;
     size_and_samples(ui, document, remembered, cx);
@@ -131,9 +133,10 @@ fn sphere(ui: &mut Ui, document: &mut Document, cx: &PanelContext) {
             cx.edit(Edit::Change(selected.sphere, body));
         }
         ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
             for (name, command) in [
                 ("Focus", Command::FocusSphere),
-                ("Copy", Command::DuplicateSphere),
+                ("Duplicate", Command::DuplicateSphere),
                 ("Delete", Command::DeleteSphere),
             ] {
                 command_button(ui, cx, command, name);
@@ -145,15 +148,19 @@ fn sphere(ui: &mut Ui, document: &mut Document, cx: &PanelContext) {
     }
 }
 
-/// The only lamp of the book.
-fn sky(ui: &mut Ui, document: &Document, cx: &PanelContext) {
+/// All spheres, and the sky, which is the only lamp of the book.
+fn scene(ui: &mut Ui, document: &Document, cx: &PanelContext) {
     let (mut sky, own) = (document.scene().sky, document.origin.recipe.scene.sky);
     let reset = (sky != own).then_some("Reset sky");
-    ui.spacing_mut().item_spacing.y = 0.0;
-    let is_reset = fold(ui, Header { title: "Sky", reset, ..Header::default() }, false, |ui| {
-        colour(ui, About::new("Overhead", "The light from straight above"), &mut sky.top);
+    let summary = counted(document.scene().spheres.len() as u64, "sphere");
+    let header = Header { title: "Scene", summary: &summary, reset, ..Header::default() };
+    let is_reset = fold(ui, header, false, |ui| {
+        spheres::ui(ui, cx);
+        ui.add_space(8.0);
+        ui.spacing_mut().item_spacing.y = 8.0;
+        colour(ui, About::new("Sky overhead", "The light from straight above"), &mut sky.top);
         let help = "The light from straight below, which fades upwards";
-        colour(ui, About::new("At the horizon", help), &mut sky.bottom);
+        colour(ui, About::new("Sky at the horizon", help), &mut sky.bottom);
     });
     let sky = if is_reset { own } else { sky };
     if sky != document.scene().sky {

@@ -7,5 +7,6 @@ pub mod first_steps;
 pub mod plot;
 pub mod present;
 pub mod right;
+mod spheres;
 pub mod stage_panel;
 pub mod status;

@@ -1,11 +1,15 @@
 //! The text about the stage: what it adds, what to look for, and what to compare it with.
 
 use crate::app::commands::{Command, PanelContext};
-use crate::app::model::Document;
+use crate::app::model::{Document, Source};
 use crate::app::toolkit::widgets::{add_command, command_button, hint, primary, small};
 use crate::measure::stress::Case;
 use crate::stages::Stage;
 use eframe::egui::{Label, Link, RichText, Ui};
+
+/// How a scene of one's own begins.
+const NEW: &str = "Insert puts a sphere where the pointer is. Click a sphere to drag it; the controls change its size, its \
+                   material and the sky. Ctrl+S saves the picture or the scene.";
 
 pub fn ui(ui: &mut Ui, cx: &PanelContext) {
     let document = cx.document();
@@ -76,7 +80,10 @@ fn show_me(ui: &mut Ui, stage: &Stage, cx: &PanelContext) {
 fn recipe_ui(ui: &mut Ui, document: &Document) {
     let scene = document.scene();
     let (spheres, materials) = (scene.spheres.len(), scene.materials.len());
-    title(ui, &format!("{spheres} spheres, {materials} materials"), &document.origin.recipe.name);
+    title(ui, &format!("{spheres} spheres, {materials} materials"), &document.heading());
+    if document.origin.source == Source::New {
+        paragraph(ui, "To begin with", NEW);
+    }
 }
 
 /// Text about an extreme scene: what makes it difficult and what to watch.

@@ -128,6 +128,9 @@ pub fn sentence(snapshot: &Snapshot) -> String {
     let samples = format!("{} samples per pixel", grouped(count));
     match &status.phase {
         Phase::Failed(reason) => format!("Stopped at {samples}: {reason}"),
+        _ if let Some(play) = &snapshot.model.playing => {
+            format!("Frame {} of {}; Escape stops", play.frame + 1, snapshot.document().frame_count())
+        }
         _ if snapshot.is_coarse && snapshot.is_moving => "A coarse picture while you move".to_owned(),
         _ if (snapshot.is_coarse || count == 0) && snapshot.has_picture => "Refining".to_owned(),
         _ if snapshot.is_coarse || count == 0 => "Starting".to_owned(),

@@ -67,7 +67,8 @@ impl Finder {
             (self.chosen, self.has_moved) = (Some(place - 1), true);
         }
         let mut run = self.chosen.filter(|chosen| is_enter && *chosen < found.len());
-        let area = ScrollArea::vertical().min_scrolled_height(height).max_height(height).auto_shrink(false);
+        let area = ScrollArea::vertical().min_scrolled_height(height).max_height(height);
+        let area = area.auto_shrink([false, true]);
         area.show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             if found.is_empty() {

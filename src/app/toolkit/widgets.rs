@@ -5,11 +5,13 @@ use crate::app::commands::{Command, PanelContext};
 use eframe::egui::collapsing_header::{CollapsingState, paint_default_icon};
 use eframe::egui::{
     self, Align, Atom, Button, Color32, ComboBox, CornerRadius, DragValue, Id, IntoAtoms, Key, Label, Layout,
-    Rect, RectAlign, Response, RichText, Role, Sense, Sides, Slider, SliderClamping, Stroke, Tooltip, Ui,
-    UiBuilder, Vec2, Widget, WidgetInfo, WidgetText, pos2, response::Flags, vec2,
+    Rect, RectAlign, Response, RichText, Role, Sense, Sides, Slider, SliderClamping, Stroke, StrokeKind,
+    Tooltip, Ui, UiBuilder, Vec2, Widget, WidgetInfo, WidgetText, pos2, response::Flags, vec2,
 };
 use glam::DVec3;
+use std::cell::Cell;
 use std::ops::RangeInclusive;
+use std::time::Duration;
 
 /// Width of a field for a number, points.
 pub const FIELD: f32 = 64.0;
@@ -19,6 +21,9 @@ const SPACING: f32 = 8.0;
 
 /// Height of a row of tabs, points.
 pub const TABS: f32 = 40.0;
+
+/// How long a number is red that cannot be, seconds.
+const REFUSED: f64 = 3.0;
 
 /// A control's name, its tooltip, and the reason if it is disabled.
 #[derive(Clone, Copy)]
@@ -306,14 +311,19 @@ impl<'a> Number<'a> {
         Number { is_whole: true, ..self }
     }
 
-    /// The field alone. A number beyond a limit becomes the limit.
+    /// The field alone. A typed number beyond a limit changes nothing: the field is red then, and tells the limits.
     pub fn field(&self, ui: &mut Ui, width: f32, value: &mut f64) -> Response {
-        let (before, mut shown) = (*value, *value);
+        let (before, mut shown, is_refused) = (*value, *value, Cell::new(false));
         // The shown text stands for the exact number, although it has fewer digits.
         let parse = |text: &str| {
             let text: String = text.chars().filter(|c| !c.is_whitespace()).collect();
-            let number = || text.replace('\u{2212}', "-").trim_end_matches(self.suffix.trim()).parse().ok();
-            if text == self.text(before) { Some(before) } else { number() }
+            if text == self.text(before) {
+                return Some(before);
+            }
+            let number = text.replace('\u{2212}', "-").trim_end_matches(self.suffix.trim()).parse().ok();
+            let number = number.filter(|number| self.limits.contains(number));
+            is_refused.set(number.is_none());
+            number
         };
         let speed = self.speed.unwrap_or(0.01 * before.abs().max(0.1));
         let drag = DragValue::new(&mut shown)
@@ -341,6 +351,19 @@ impl<'a> Number<'a> {
             *value = if self.is_whole { shown.round() } else { shown };
         }
         response.flags.set(Flags::CHANGED, *value != before);
+        let (place, now) = (response.id.with("refused"), ui.input(|input| input.time));
+        if is_refused.get() && !was_cancelled {
+            ui.data_mut(|data| data.insert_temp(place, now));
+        }
+        let left = ui.data(|data| data.get_temp(place)).map_or(0.0, |since: f64| since + REFUSED - now);
+        if left > 0.0 && !ui.input(|input| input.pointer.any_down()) {
+            let stroke = Stroke::new(1.5, theme::colours(ui).bad);
+            ui.painter().rect_stroke(response.rect, 4, stroke, StrokeKind::Inside);
+            let [least, most] = [self.limits.start(), self.limits.end()].map(|limit| self.text(*limit));
+            show_tip(ui, &response, &format!("From {least} to {most}"));
+            ui.ctx().request_repaint_after(Duration::from_secs_f64(left));
+            return response;
+        }
         tip(ui, response, self.about.help, self.about.disabled_reason)
     }
 
@@ -426,9 +449,14 @@ fn fields(
     });
 }
 
-/// A colour to pick, or to type as shares of light. It is shown as the picture shows it in white light.
+/// The bytes of a colour as the picture shows it in white light.
+pub fn shown_albedo(albedo: DVec3) -> [u8; 3] {
+    albedo.to_array().map(|n| (255.0 * n.clamp(0.0, 1.0).sqrt()).round() as u8)
+}
+
+/// A colour to pick, or to type as shares of light.
 pub fn colour(ui: &mut Ui, about: About<'_>, albedo: &mut DVec3) {
-    let shown = albedo.to_array().map(|n| (255.0 * n.clamp(0.0, 1.0).sqrt()).round() as u8);
+    let shown = shown_albedo(*albedo);
     row(ui, about, |ui| {
         ui.spacing_mut().interact_size.x = FIELD;
         let mut picked = shown;

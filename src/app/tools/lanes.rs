@@ -8,7 +8,7 @@ use crate::app::toolkit::{Query, theme};
 use crate::backends::explain::{Activity, Timeline, timeline};
 use crate::render_cpu::PathRecorder;
 use crate::stages::Shading;
-use eframe::egui::{self, Color32, Rect, RichText, Sense, Ui, WidgetInfo, vec2};
+use eframe::egui::{self, Color32, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
 /// Samples that each lane traces.
 const SAMPLES: u64 = 12;
@@ -73,6 +73,11 @@ impl Lanes {
 }
 
 fn timelines_ui(ui: &mut Ui, timelines: &[Timeline; 2]) {
+    let height = ui.available_height();
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| timelines_in(ui, height, timelines));
+}
+
+fn timelines_in(ui: &mut Ui, height: f32, timelines: &[Timeline; 2]) {
     let lanes = timelines[0].lanes.len().max(1);
     ui.spacing_mut().item_spacing.y = 4.0;
     ui.add(egui::Label::new(format!(
@@ -87,7 +92,7 @@ fn timelines_ui(ui: &mut Ui, timelines: &[Timeline; 2]) {
     });
     let steps = timelines.iter().map(Timeline::len).max().unwrap_or(0).max(1);
     let column = (ui.available_width() / steps as f32).min(COLUMN);
-    let room = 0.5 * ui.available_height() - HEADING - 8.0;
+    let room = 0.5 * (height - ui.min_rect().height()) - HEADING - 8.0;
     let row = (room / lanes as f32).clamp(*ROWS.start(), *ROWS.end());
     for (timeline, name) in timelines.iter().zip(["Without refill", "With refill"]) {
         let (steps, share) = (timeline.len(), 100.0 * timeline.share_at_work());

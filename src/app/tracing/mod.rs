@@ -12,7 +12,7 @@ use crate::app::model::{Device, Document, Model, Partner, Sizing};
 use crate::app::toolkit::Toasts;
 use crate::film::Film;
 use crate::progressive::{HistoryPoint, Phase, Status, Stop};
-use eframe::egui::Context;
+use eframe::egui::{Context, Vec2};
 use second::{Other, Second};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -243,6 +243,8 @@ pub struct Sizer {
     /// The size that fits, and since when.
     fitting: Option<([u32; 2], Instant)>,
     is_asked: bool,
+    /// The size of the window, points, when the picture got its size.
+    window: Vec2,
     /// A large size that the user wants.
     pub accepted: Option<[u32; 2]>,
     /// The size at which the picture could be rendered anew, if it is only scaled.
@@ -267,17 +269,23 @@ impl Sizer {
         let is_asked = std::mem::take(&mut self.is_asked);
         self.offer = None;
         let Some(wanted) = document.fitting_size(sizing, room) else { return };
-        let now = Instant::now();
+        let (now, window) = (Instant::now(), context.content_rect().size());
         let since = match self.fitting {
             Some((fitting, since)) if fitting == wanted => since,
             _ => now,
         };
         self.fitting = Some((wanted, since));
+        // Panels that take room from a picture show it smaller, and give the room back.
+        let is_smaller = (0..2).all(|side| wanted[side] <= document.size()[side]);
         if wanted == document.size() {
+            self.window = window;
+        }
+        if wanted == document.size() || lost.is_some() && !is_asked && is_smaller && window == self.window {
             return;
         }
         // The book's size changes only when the user chooses it or another picture.
         let Some(seconds) = lost.filter(|_| !is_asked && sizing != Sizing::Book) else {
+            self.window = window;
             document.set_size(wanted);
             return;
         };
@@ -290,6 +298,7 @@ impl Sizer {
         } else if context.input(|input| input.pointer.any_down()) {
             context.request_repaint_after(SETTLE);
         } else {
+            self.window = window;
             document.set_size(wanted);
         }
     }

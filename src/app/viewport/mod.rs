@@ -216,7 +216,7 @@ fn context_menu(ui: &mut Ui, cx: &PanelContext) {
     use Command as C;
     ui.set_width(menu::MENU_WIDTH);
     if cx.model.selected.is_some() {
-        for command in [C::FocusSphere, C::DuplicateSphere, C::DeleteSphere] {
+        for command in [C::FocusSphere, C::Copy, C::DuplicateSphere, C::DeleteSphere] {
             menu::item(ui, cx, command);
         }
         ui.separator();

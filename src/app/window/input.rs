@@ -55,7 +55,7 @@ pub fn take_keys(context: &egui::Context, is_presenting: bool, commands: &mut Ve
         // In a long frame a key can have been pressed several times.
         let mut presses =
             context.input_mut(|input| input.count_and_consume_key(shortcut.modifiers, shortcut.logical_key));
-        if command == Command::CopyPicture {
+        if command == Command::Copy {
             presses += context.input_mut(take_copies);
         }
         if presses > 0 {
@@ -77,6 +77,19 @@ fn take_copies(input: &mut egui::InputState) -> usize {
     let before = input.events.len();
     input.events.retain(|event| !matches!(event, egui::Event::Copy));
     before - input.events.len()
+}
+
+/// Takes the text that is pasted, unless a field of text takes it.
+pub fn take_pasted(context: &egui::Context) -> Option<String> {
+    if context.text_edit_focused() {
+        return None;
+    }
+    let pasted = |event: &egui::Event| match event {
+        egui::Event::Paste(text) => Some(text.clone()),
+        egui::Event::PasteImage(_) => Some(String::new()),
+        _ => None,
+    };
+    context.input(|input| input.events.iter().find_map(pasted))
 }
 
 /// Moves the camera while keys are held. Returns whether it moved.

@@ -39,7 +39,9 @@ impl Window {
             present::blank(ui.ctx());
         }
         let Requests { commands, edits } = cx.requests.into_inner();
-        edits.into_iter().for_each(|edit| self.edit(edit));
+        if !edits.is_empty() {
+            self.edit(&edits);
+        }
         self.commands.extend(commands);
     }
 

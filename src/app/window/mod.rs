@@ -107,6 +107,7 @@ impl Window {
                 remembered,
                 devices: DeviceOptions::of(&options.backend),
                 is_paused: false,
+                playing: None,
                 is_full_screen: false,
                 has_first_steps,
                 steps_done: [false; 3],
@@ -164,6 +165,7 @@ impl Window {
         self.receive(&context);
         self.follow_close(&context);
         self.take_input(&context);
+        self.play(&context);
         self.perform_all(&context);
         self.layout(ui);
         self.perform_all(&context);
@@ -219,6 +221,10 @@ impl Window {
         }
         if self.shell.dialogs.is_open() {
             return;
+        }
+        if let Some(text) = input::take_pasted(context) {
+            self.shell.pasted = Some(text);
+            self.send(Command::Paste);
         }
         let is_presenting = self.model.presentation.is_some();
         if !input::take_keys(context, is_presenting, &mut self.commands) {
@@ -302,7 +308,7 @@ impl Window {
         }
         let subject = Subject::new(&model.view, &model.document, tracing);
         files.follow(context, &subject);
-        files.follow_sized(context, &mut shell.toasts);
+        files.follow_making(context, &mut shell.toasts);
         if let Some(reason) = autosave.follow(context, (&model.document, changes), tracing) {
             let words = format!("Autosave failed: {reason}. Rendering continues; the next save will retry");
             shell.toasts.bad(words);
@@ -347,6 +353,7 @@ impl Drop for Window {
 
 impl Window {
     fn end(&mut self) {
+        self.stop_play();
         self.files.end();
         self.autosave.end(&self.model, &self.changes, &mut self.tracing);
     }

@@ -2,23 +2,28 @@
 
 use super::Window;
 use super::layout::NARROW;
-use crate::app::commands::{Command, MENUS};
+use crate::app::commands::{Command, MENUS, Snapshot};
 use crate::app::dialogs::{
-    Dialog, LargeSize, Outcome, Purpose, SaveBox, What, default_folder, file_name, samples_wanted, stage_list,
+    Dialog, LargeSize, Outcome, Purpose, SaveBox, Wanted, What, default_folder, samples_wanted, stage_list,
 };
 use crate::app::files::edits;
+use crate::app::model::animation::{FRAMES_PER_SECOND, Play};
 use crate::app::model::spheres::grip::new_body;
 use crate::app::model::spheres::{self, Selected};
 use crate::app::model::{
-    Body, Bookmark, Device, Dock, Document, Edit, Mode, Model, Origin, Partner, Presentation, Remembered,
-    Show, Source, Tab, Tone, ViewState, companion, device, navigation,
+    Body, Device, Dock, Document, Edit, Mode, Model, Origin, Partner, Presentation, Remembered, Show, Source,
+    Tab, Tone, companion, device, navigation,
 };
 use crate::app::toolkit::Finder;
 use crate::app::toolkit::widgets::focus;
 use crate::app::viewport::sight::Sighted;
+use crate::cli::{FramesOptions, ProgressChoice};
 use crate::film::Film;
 use crate::job::output::OutputFormat;
+use crate::job::recipe::Recipe;
+use crate::job::recipe::file::sphere_to_toml;
 use crate::measure::grouped;
+use crate::scene::animation::FrameNames;
 use crate::stages::{BOOK_URL, Stage};
 use eframe::egui::{self, Context, ViewportCommand};
 use std::path::{Path, PathBuf};
@@ -33,6 +38,9 @@ impl Window {
         if let Some(log) = &mut self.shell.frame_log {
             log.command(&snapshot.name(command));
         }
+        if self.stop_play() && command == Command::Play {
+            return;
+        }
         self.changes.end_move();
         if command != Command::Blank
             && let Some(presentation) = &mut self.model.presentation
@@ -41,24 +49,40 @@ impl Window {
         }
         match snapshot.disabled_reason(command) {
             Some(reason) => self.refuse(&snapshot.name(command), &reason),
-            None => self.run(context, command),
+            None => self.run(context, command, &snapshot),
         }
     }
 
-    fn run(&mut self, context: &Context, command: Command) {
+    fn run(&mut self, context: &Context, command: Command, snapshot: &Snapshot) {
         use Command as C;
         let Window { model, tracing, display, tools, files, shell, .. } = self;
         let Model { document, view, remembered, .. } = model;
         match command {
+            C::NewScene => self.show_origin(Origin::new_scene()),
             C::Open => self.ask_path(context, Purpose::Open),
             C::CheckPicture => self.ask_path(context, Purpose::Check),
-            C::Save => self.ask_save(OutputFormat::Png),
-            C::SaveAs(format) => self.ask_save(format),
+            C::Save => self.ask_save(What::Picture(OutputFormat::Png)),
+            C::SaveAs(format) => self.ask_save(What::Picture(format)),
+            C::SaveAnimation => self.ask_save(What::Animation),
             C::Recent(place) => self.open_recent(context, place),
             C::ShowInFolder => self.show_in_folder(context),
+            C::Copy => match Selected::of(model) {
+                Some(Selected { body: Body { center, radius, material }, .. }) => {
+                    context.copy_text(sphere_to_toml(center, radius, &material));
+                    shell.toasts.good("Copied the sphere as text; paste it here or in a scene file");
+                }
+                None => files.pending_copy = true,
+            },
+            C::Paste => match shell.pasted.take() {
+                Some(text) => match spheres::read(&text, document) {
+                    Ok(bodies) => self.add(bodies),
+                    Err(reason) => shell.toasts.good(format!("Not pasted: {reason}")),
+                },
+                // The text comes with a later frame.
+                None => context.send_viewport_cmd(ViewportCommand::RequestPaste),
+            },
             C::CopyPicture => files.pending_copy = true,
             C::CopyCommand => self.copy_command(context),
-            C::Fresh => self.start_fresh(),
             C::Quit => context.send_viewport_cmd(ViewportCommand::Close),
             C::StopSaving => files.stop_saving(),
             C::Recover => self.recover(context),
@@ -71,15 +95,27 @@ impl Window {
             C::Redo => self.redo(),
             C::ResetAll => self.change(|window| window.model.document.reset()),
             C::AddSphere => self.add_sphere(),
-            C::DuplicateSphere => self.duplicate_sphere(),
-            C::DeleteSphere => model.selected.into_iter().for_each(|sphere| self.edit(Edit::Delete(sphere))),
+            C::DuplicateSphere => {
+                let bodies = Selected::of(model).map(|selected| selected.body).into_iter().collect();
+                self.add(bodies);
+            }
+            C::DeleteSphere => {
+                model.selected.into_iter().for_each(|sphere| self.edit(&[Edit::Delete(sphere)]))
+            }
+            C::Sphere(sphere) => model.selected = Some(sphere),
             C::NextSphere => model.selected = spheres::neighbour(document.scene(), model.selected, true),
             C::PreviousSphere => model.selected = spheres::neighbour(document.scene(), model.selected, false),
             C::FocusSphere => self.focus_sphere(),
-            C::SkyColours => self.run(context, C::Field("Sky")),
             C::Home => document.camera = document.origin.recipe.camera,
-            C::AddBookmark => self.add_bookmark(),
-            C::Bookmark(at) => remembered.bookmarks.get(at).iter().for_each(|to| document.camera = to.camera),
+            C::AddBookmark => {
+                document.add_bookmark();
+                shell.toasts.good("Bookmarked; View > Bookmarks jumps back to it");
+            }
+            C::DeleteBookmark => {
+                document.bookmark().into_iter().for_each(|place| _ = document.keyframes.remove(place));
+            }
+            C::Bookmark(at) => document.keyframes.get(at).iter().for_each(|to| document.camera = to.camera),
+            C::Play => self.begin_play(context),
 
             C::Fit => display.viewport.placement.fit(),
             C::ActualSize => display.viewport.placement.actual_size(),
@@ -150,7 +186,7 @@ impl Window {
             C::GoOnFromKept => self.go_on_from_kept(),
             C::DeleteKept => view.delete_kept(),
 
-            C::Stages | C::ExtremeScenes => self.list_stages(command == C::ExtremeScenes),
+            C::Stages => shell.dialogs.open(Dialog::Stages(stage_list::list(snapshot))),
             C::Stage(stage) => self.show_origin(Origin::of_stage(stage)),
             C::Extreme(case) => self.show_origin(Origin::of_case(case)),
             C::PreviousStage | C::NextStage => self.step_stage(command == C::NextStage),
@@ -176,7 +212,6 @@ impl Window {
                 self.open_url(context, url);
             }
             C::Companion | C::WholeCompanion => self.write_companion(context, command == C::Companion),
-            C::StopCompanion => files.stop_companion(),
 
             C::FirstSteps => {
                 (model.has_first_steps, remembered.is_greeted) =
@@ -196,6 +231,9 @@ impl Window {
 
     /// Leaves the innermost thing that can be left.
     pub(super) fn escape(&mut self) {
+        if self.stop_play() {
+            return;
+        }
         let Window { model, tools, display, commands, .. } = self;
         if model.presentation.is_some() {
             commands.push(Command::Present);
@@ -226,6 +264,11 @@ impl Window {
         if let Some(stop) = self.model.own_stop.filter(|_| document.stop.samples.is_none()) {
             document.stop = stop;
         }
+        // The bookmarks of a picture are there again when one comes back to it.
+        let known = self.changes.last_of(&document.origin.source).filter(|_| !document.is_from_file);
+        if let Some(known) = known.filter(|known| known.origin.source != Source::New) {
+            document.keyframes.clone_from(&known.keyframes);
+        }
         let before = self.document();
         if before.is_changed() && !before.is_from_file {
             let words = format!("Your changes to {} are kept in Undo", before.place());
@@ -248,21 +291,6 @@ impl Window {
         if let Some(stage) = self.model.neighbour(is_next) {
             self.show_origin(Origin::of_stage(stage));
         }
-    }
-
-    /// Opens the list of stages at the current one or, for the extreme scenes, at its end.
-    fn list_stages(&mut self, is_at_end: bool) {
-        let finder = stage_list::list(&self.snapshot(), is_at_end);
-        self.shell.dialogs.open(Dialog::Stages(finder));
-    }
-
-    pub(super) fn start_fresh(&mut self) {
-        let kept = std::mem::take(&mut self.model.view.kept);
-        self.model.view = ViewState::default();
-        self.model.view.kept = kept;
-        self.display.viewport.placement.fit();
-        self.model.is_paused = false;
-        self.show_document(Document::new(Origin::usual()));
     }
 
     // Undo
@@ -294,17 +322,41 @@ impl Window {
 
     // Camera and spheres
 
-    pub(super) fn add_bookmark(&mut self) {
-        let (document, bookmarks) = (&self.model.document, &mut self.model.remembered.bookmarks);
-        let is_free = |name: &String| bookmarks.iter().all(|bookmark| bookmark.name != *name);
-        let place = document.place();
-        let name = (1..).map(|number| format!("{place} view {number}")).find(is_free).unwrap_or_default();
-        bookmarks.push(Bookmark { name, camera: document.camera });
-        self.shell.toasts.good("Bookmarked; View > Bookmarks jumps back to it");
+    fn begin_play(&mut self, context: &Context) {
+        let (document, since) = (&self.model.document, context.input(|input| input.time));
+        let path = document.path(document.frame_count());
+        let (before, shown) = (document.camera, document.camera);
+        self.model.playing = Some(Play { path, since, before, frame: 0, shown });
     }
 
-    pub(super) fn edit(&mut self, edit: Edit) {
-        if let Err(reason) = spheres::edit(&mut self.model, edit) {
+    /// Shows the camera of the frame of now, until the last one or until the user moves the camera.
+    pub(super) fn play(&mut self, context: &Context) {
+        let Model { playing: Some(play), document, .. } = &mut self.model else { return };
+        context.request_repaint();
+        let seconds = context.input(|input| input.time) - play.since;
+        play.frame = (seconds * FRAMES_PER_SECOND) as u32;
+        if document.camera != play.shown {
+            self.model.playing = None;
+        } else if play.frame >= document.frame_count() {
+            self.stop_play();
+        } else {
+            let camera = play.path.camera(play.frame);
+            document.camera = if camera.validate().is_ok() { camera } else { document.camera };
+            play.shown = document.camera;
+            self.changes.note_move();
+        }
+    }
+
+    /// Returns to the camera from before an animation. Returns whether one was played.
+    pub(super) fn stop_play(&mut self) -> bool {
+        let Some(play) = self.model.playing.take() else { return false };
+        // No step of the history.
+        (self.model.document.camera, self.changes.last.camera) = (play.before, play.before);
+        true
+    }
+
+    pub(super) fn edit(&mut self, edits: &[Edit]) {
+        if let Err(reason) = spheres::edit(&mut self.model, edits) {
             self.shell.toasts.bad(reason);
         }
     }
@@ -313,15 +365,13 @@ impl Window {
         let (document, place) = (self.document(), self.display.viewport.aim());
         let body =
             new_body(document.pick(&document.camera, place), &document.camera, document.aspect(), place);
-        self.edit(Edit::Add(body));
+        self.edit(&[Edit::Add(body)]);
     }
 
-    /// Puts a copy to the right of the selected sphere.
-    pub(super) fn duplicate_sphere(&mut self) {
-        if let Some(Selected { body, .. }) = Selected::of(&self.model) {
-            let center = body.center + 2.2 * body.radius * self.document().camera.basis().u;
-            self.edit(Edit::Add(Body { center, ..body }));
-        }
+    /// Adds copies of spheres, beside those that they would hide.
+    fn add(&mut self, bodies: Vec<Body>) {
+        let bodies = spheres::beside(self.document().scene(), &self.document().camera, bodies);
+        self.edit(&bodies.into_iter().map(Edit::Add).collect::<Vec<_>>());
     }
 
     pub(super) fn focus_sphere(&mut self) {
@@ -529,10 +579,9 @@ impl Window {
         self.shell.dialogs.system.ask(context, purpose, from);
     }
 
-    /// Opens the dialog of saving with this format chosen.
-    pub(super) fn ask_save(&mut self, format: OutputFormat) {
-        let (name, what) = (file_name(self.document()), What::Picture(format));
-        let save = SaveBox::new(&name, self.folder(), what, self.document().size());
+    /// Opens the dialog of saving with this choice.
+    pub(super) fn ask_save(&mut self, what: What) {
+        let save = SaveBox::new(self.document(), self.folder(), what);
         self.shell.dialogs.open(Dialog::Save(save));
     }
 
@@ -548,10 +597,12 @@ impl Window {
             Outcome::Named(Purpose::Check, path) => self.tools.check.begin(context, &path, None),
             Outcome::Named(Purpose::Compare, path) => self.display.kept.read(context, &self.model, path),
             Outcome::Named(_, path) => self.files.open(context, path),
-            Outcome::Save(what, size, path) => {
+            Outcome::Save(wanted) => {
                 // If this fails, writing the file tells why.
-                let _ = path.parent().map(std::fs::create_dir_all);
-                self.save_as(context, what, size, path);
+                let _ = wanted.path.parent().map(std::fs::create_dir_all);
+                if let Err(reason) = self.save(context, wanted) {
+                    self.shell.toasts.bad(format!("Not saved: {reason}"));
+                }
             }
             Outcome::Size(size) => {
                 self.tracing.sizer.accepted = Some(size);
@@ -566,8 +617,9 @@ impl Window {
         }
     }
 
-    fn save_as(&mut self, context: &Context, what: What, size: [u32; 2], path: PathBuf) {
-        let document = &self.model.document;
+    fn save(&mut self, context: &Context, wanted: Wanted) -> Result<(), String> {
+        let Wanted { what, size, frames, samples, path } = wanted;
+        let (document, backend) = (&self.model.document, self.model.backend());
         match what {
             What::Scene => self.files.save_scene(context, path, document),
             What::Picture(format) if size == document.size() => {
@@ -577,14 +629,30 @@ impl Window {
                 let samples = samples_wanted(document, self.tracing.main.status());
                 let mut document = document.clone();
                 document.give_size(size);
-                let backend = self.model.backend();
-                let named = (format, path);
-                let begun = self.files.save_rendered(context, (document, samples), backend, named);
-                if let Err(reason) = begun {
-                    self.shell.toasts.bad(format!("Not saved: {reason}"));
-                }
+                self.files.save_rendered(context, (document, samples), backend, (format, path))?;
+            }
+            What::Animation => {
+                self.model.document.stretch(frames);
+                let mut document = self.document().clone();
+                document.give_size(size);
+                let (frames, job) = (frames.max(document.keyframes.len() as u32), document.job(1));
+                let options = FramesOptions {
+                    recipe: Recipe { samples_per_pixel: samples.into(), ..document.recipe() },
+                    job: job.map_err(|error| error.to_string())?,
+                    stage: document.stage().filter(|_| !document.has_changed_scene()),
+                    path: document.path(frames),
+                    frames: 0..frames,
+                    names: FrameNames::of_pattern(&path.join("frame-####.png")).ok_or("it has no name")?,
+                    backend,
+                    progress: ProgressChoice::Off,
+                    json: None,
+                    command: None,
+                };
+                options.check().map_err(|error| format!("{error:#}"))?;
+                self.files.save_frames(context, options)?;
             }
         }
+        Ok(())
     }
 
     /// Asks before a size is rendered that needs much memory or time. Until then the picture has the size of before.
@@ -668,32 +736,20 @@ impl Window {
     }
 
     pub(super) fn write_companion(&mut self, context: &Context, is_quick: bool) {
-        match self.files.write_companion(context, is_quick) {
-            Ok(()) => {
-                let time = if is_quick { "about 3 s" } else { "some minutes" };
-                let words = format!("Writing the companion, {time}…");
-                self.shell.toasts.offer(words, &[Command::StopCompanion]);
-            }
-            Err(reason) => self.shell.toasts.bad(reason),
+        if let Err(reason) = self.files.write_companion(context, is_quick) {
+            self.shell.toasts.bad(format!("Companion: {reason}"));
         }
     }
 
     /// Opens the companion that was written at the stage that is shown.
-    pub(super) fn show_companion(&mut self, context: &Context, written: Result<bool, String>) {
-        let is_stopped = self.files.end_companion();
-        self.shell.toasts.withdraw(Command::StopCompanion);
+    pub(super) fn show_companion(&mut self, context: &Context, is_full: bool) {
         let Some(folder) = self.files.companion_folder() else { return };
-        match written {
-            Ok(_) if is_stopped => {}
-            Ok(true) => self.shell.toasts.good("The full companion is written; reload it in your browser"),
-            Ok(false) => {
-                let url = companion::url(&folder.join("index.html"), self.document().stage());
-                if self.open_url(context, url) {
-                    let words = "The companion is open in your browser";
-                    self.shell.toasts.good_with(words, &[Command::WholeCompanion]);
-                }
-            }
-            Err(reason) => self.shell.toasts.bad(format!("The companion was not written: {reason}")),
+        let url = companion::url(&folder.join("index.html"), self.document().stage());
+        if is_full {
+            self.shell.toasts.good("The full companion is written; reload it in your browser");
+        } else if self.open_url(context, url) {
+            let words = "The companion is open in your browser";
+            self.shell.toasts.good_with(words, &[Command::WholeCompanion]);
         }
     }
 
@@ -710,7 +766,7 @@ impl Window {
         let adapter = adapter.map(|adapter| adapter.name.as_str());
         context.copy_text(document.command_line(samples.max(1), device.name(), adapter));
         let needs_file = document.has_changed_scene()
-            || matches!(document.origin.source, Source::Embedded | Source::Extreme(_));
+            || matches!(document.origin.source, Source::New | Source::Embedded | Source::Extreme(_));
         let is_saved = document.checked.file().is_some();
         self.shell.toasts.good(if needs_file && !is_saved {
             "Copied; the scene has no file yet: save it, since the command reads it"

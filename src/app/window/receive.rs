@@ -2,7 +2,7 @@
 
 use super::Window;
 use crate::app::commands::Command;
-use crate::app::files::Resumed;
+use crate::app::files::{Made, Resumed, name_of};
 use crate::app::model::{Dock, Document, Kept, Origin, Partner, Source};
 use crate::job::saved::{Opened, Saved};
 use crate::progressive::Stop;
@@ -12,27 +12,29 @@ use std::sync::Arc;
 impl Window {
     /// Takes all answers that have arrived.
     pub(super) fn receive(&mut self, context: &Context) {
-        while let Some(outcome) = self.files.saved.take() {
-            match outcome {
-                Ok(path) => {
-                    self.shell.toasts.end_error("Not saved");
+        while let Some(outcome) = self.files.take_made() {
+            match self.settle("Not saved", outcome) {
+                Some(Made::File(path)) => {
                     self.model.remembered.note_recent(&path);
-                    let name = path.file_name().unwrap_or(path.as_os_str()).display();
-                    self.shell.toasts.good_with(format!("Saved {name}"), &[Command::ShowInFolder]);
+                    let words = format!("Saved {}", name_of(&path));
+                    self.shell.toasts.good_with(words, &[Command::ShowInFolder]);
                 }
-                Err(reason) => {
+                Some(Made::Frames(count, folder)) => {
+                    self.shell.toasts.good(format!("Saved {count} frames in {}", folder.display()));
+                }
+                Some(Made::Companion(is_full)) => self.show_companion(context, is_full),
+                None => {
                     self.shell.leaves_when_saved = false;
-                    self.shell.toasts.bad(format!("Not saved: {reason}"));
                     self.shell.toasts.add_offers(&[Command::Save]);
                 }
             }
         }
         while let Some(outcome) = self.files.opened.take() {
-            match outcome {
-                Ok(Ok(opened)) => self.show_opened(opened),
+            match self.settle("Not opened", outcome) {
+                Some(Ok(opened)) => self.show_opened(opened),
                 // A picture of another program is the user's own, to be checked.
-                Ok(Err(path)) => self.tools.check.begin(context, &path, None),
-                Err(reason) => self.shell.toasts.bad(format!("Not opened: {reason}")),
+                Some(Err(path)) => self.tools.check.begin(context, &path, None),
+                None => {}
             }
         }
         self.tools.check.follow(context, &mut self.model.remembered);
@@ -41,33 +43,18 @@ impl Window {
             context.copy_image(picture);
         }
         while let Some(outcome) = self.display.kept.copied.take() {
-            match outcome {
-                Ok(kept) => {
-                    self.shell.toasts.end_error("Not kept");
-                    self.add_kept(kept);
-                }
-                Err(reason) => self.shell.toasts.bad(format!("Not kept: {reason}")),
-            }
+            self.settle("Not kept", outcome).into_iter().for_each(|kept| self.add_kept(kept));
         }
         while let Some(outcome) = self.display.kept.files.take() {
-            match outcome {
-                Ok(kept) => {
-                    let partner = Partner::Kept(kept.number);
-                    self.model.view.keep(kept);
-                    self.model.view.compare_with(partner);
-                }
-                Err(reason) => self.shell.toasts.bad(format!("Not compared: {reason}")),
+            if let Some(kept) = self.settle("Not compared", outcome) {
+                let partner = Partner::Kept(kept.number);
+                self.model.view.keep(kept);
+                self.model.view.compare_with(partner);
             }
         }
         while let Some(outcome) = self.files.resumed.take() {
-            match outcome {
-                Ok(resumed) => self.go_on(resumed),
-                Err(reason) => self.shell.toasts.bad(format!("Not resumed: {reason}")),
-            }
+            self.settle("Not resumed", outcome).into_iter().for_each(|resumed| self.go_on(resumed));
             self.autosave.is_restoring = false;
-        }
-        while let Some(outcome) = self.files.companions.take() {
-            self.show_companion(context, outcome);
         }
         if let Some(outcome) = self.shell.dialogs.chosen() {
             self.end_dialog(context, outcome);
@@ -77,8 +64,16 @@ impl Window {
         self.tracing.report(device, &mut self.shell.toasts);
     }
 
+    /// A success ends the error about `subject`, and a failure is one.
+    fn settle<T>(&mut self, subject: &str, outcome: Result<T, String>) -> Option<T> {
+        match &outcome {
+            Ok(_) => self.shell.toasts.end_error(subject),
+            Err(reason) => self.shell.toasts.bad(format!("{subject}: {reason}")),
+        }
+        outcome.ok()
+    }
+
     fn show_opened(&mut self, Opened { path, recipe, saved, .. }: Opened) {
-        self.shell.toasts.end_error("Not opened");
         let is_left = self.autosave.is_answered(&path);
         let mut document = match &saved {
             None => Document::new(Origin::new(recipe, Source::File(path.clone()))),
@@ -93,8 +88,7 @@ impl Window {
             format!("Resumed {}", self.document().place())
         } else {
             self.model.remembered.note_recent(&path);
-            let name = path.file_name().unwrap_or(path.as_os_str()).display();
-            format!("Opened {name}; its size and samples hold for this picture only")
+            format!("Opened {}; its size and samples hold for this picture only", name_of(&path))
         });
         if let Some(film) = saved.and_then(Saved::into_film) {
             self.adopt(film.film, film.seconds);
@@ -131,7 +125,7 @@ impl Window {
         let origin = Arc::clone(&self.document().origin);
         self.files.scene_file.watch(context, &origin);
         let Source::File(path) = &origin.source else { return };
-        let name = path.file_name().unwrap_or(path.as_os_str()).display();
+        let name = name_of(path);
         while let Some(recipe) = self.files.scene_file.reread.take() {
             let is_own = self.document().checked.file().is_some_and(|saved| saved == *path);
             match recipe {

@@ -4,6 +4,7 @@ pub mod grip;
 pub mod silhouette;
 
 use crate::app::model::{Body, CheckedScene, Document, Edit, Model};
+use crate::job::recipe::{Recipe, file};
 use crate::job::render::TRACING_BYTES_PER_SPHERE;
 use crate::scene::{Camera, Material, Scene, Sphere};
 use crate::system::memory;
@@ -38,17 +39,18 @@ impl Selected {
 ///
 /// # Errors
 /// Why the scene would be invalid; it is then as before.
-pub fn edit(model: &mut Model, edit: Edit) -> Result<(), String> {
+pub fn edit(model: &mut Model, edits: &[Edit]) -> Result<(), String> {
     let document = &model.document;
     let (scene, recipe) = (document.scene(), &document.origin.recipe);
-    let count = scene.spheres.len() as u64;
+    let count = (scene.spheres.len() + edits.len()) as u64;
     memory::check(
         || format!("a changed copy of {count} spheres"),
-        (count + 1) * (size_of::<Sphere>() as u64 + TRACING_BYTES_PER_SPHERE),
+        count * (size_of::<Sphere>() as u64 + TRACING_BYTES_PER_SPHERE),
         "save the scene and open it again, which frees the copies that undo keeps",
     )
     .map_err(|error| error.to_string())?;
-    let (scene, selected) = edit.apply(scene);
+    let (mut scene, mut selected) = (scene.clone(), model.selected);
+    edits.iter().for_each(|edit| selected = edit.apply(&mut scene));
     // A value that was typed or dragged back is not a change.
     let checked = if scene == *recipe.scene {
         Arc::clone(&document.origin.scene)
@@ -59,6 +61,39 @@ pub fn edit(model: &mut Model, edit: Edit) -> Result<(), String> {
     };
     (model.document.checked, model.selected) = (checked, selected);
     Ok(())
+}
+
+/// The spheres of a text: of `[[spheres]]` alone, which may name materials of the document, or of a whole scene file.
+///
+/// # Errors
+/// Why there are none, in words.
+pub fn read(text: &str, document: &Document) -> Result<Vec<Body>, String> {
+    if !text.contains("spheres") {
+        return Err("the copied text is not a sphere; select one and press Ctrl+C".to_owned());
+    }
+    let mut whole = text.to_owned();
+    if !text.contains("[camera]") {
+        let mut scene = Scene { spheres: Vec::new(), ..document.scene().clone() };
+        if text.contains("[materials") {
+            scene.materials.clear();
+        }
+        let rest = file::to_toml(&Recipe { scene: Arc::new(scene), ..document.recipe() });
+        whole = format!("{text}\n\n{rest}");
+    }
+    let recipe = file::parse(&whole, "the copied text").map_err(|error| error.to_string())?;
+    Ok((0..recipe.scene.spheres.len()).filter_map(|sphere| Body::of(&recipe.scene, sphere)).collect())
+}
+
+/// The spheres beside those of `scene`, if the first would hide one: moved to the right of the camera.
+pub fn beside(scene: &Scene, camera: &Camera, mut bodies: Vec<Body>) -> Vec<Body> {
+    let Some(first) = bodies.first().copied() else { return bodies };
+    let least = bodies.iter().map(|body| body.radius.abs()).fold(f64::INFINITY, f64::min);
+    let step = 2.2 * least * camera.basis().u;
+    let is_taken =
+        |center| scene.spheres.iter().any(|other| other.center == center && other.radius == first.radius);
+    let by = (0..).map(|steps| f64::from(steps) * step).find(|by| !is_taken(first.center + *by));
+    bodies.iter_mut().for_each(|body| body.center += by.unwrap_or_default());
+    bodies
 }
 
 /// The sphere after or before the selected one, in the order of the scene; the first or last if none is selected.
@@ -127,11 +162,11 @@ mod tests {
         let model = &mut window.model;
         let first = Body::of(model.document.scene(), 1).unwrap();
         let with_radius = |radius| Edit::Change(1, Body { radius, ..first });
-        edit(model, with_radius(0.125)).unwrap();
+        edit(model, &[with_radius(0.125)]).unwrap();
         assert_eq!((model.document.scene().spheres[1].radius, model.selected), (0.125, Some(1)));
-        assert!(edit(model, with_radius(0.0)).unwrap_err().contains("radius"));
+        assert!(edit(model, &[with_radius(0.0)]).unwrap_err().contains("radius"));
         assert_eq!(model.document.scene().spheres[1].radius, 0.125);
-        edit(model, with_radius(first.radius)).unwrap();
+        edit(model, &[with_radius(first.radius)]).unwrap();
         assert!(!model.document.has_changed_scene(), "a value that is typed back");
     }
 

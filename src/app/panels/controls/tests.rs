@@ -37,7 +37,7 @@ fn set(harness: &mut Harness<'_, PanelContext>, name: &str, text: &str) {
 }
 
 #[test]
-fn a_typed_number_is_applied_once_and_within_its_limits() {
+fn a_typed_number_is_applied_once_and_refused_beyond_its_limits() {
     let mut harness = panel("--stage book");
     let vfov = |harness: &Harness<'_, PanelContext>| harness.state().document().camera.vfov_degrees;
     field(&harness, "Field of view").click();
@@ -48,9 +48,17 @@ fn a_typed_number_is_applied_once_and_within_its_limits() {
     harness.key_press(Key::Enter);
     harness.run_steps(3);
     assert_eq!(vfov(&harness), 45.0);
-    for (text, expected) in [("200", 179.0), ("NaN", 179.0), ("45", 45.0)] {
+    for (text, expected, is_refused) in [
+        ("200", 45.0, true),
+        ("NaN", 45.0, true),
+        ("44", 44.0, false),
+        ("-3", 44.0, true),
+        ("45", 45.0, false),
+    ] {
+        harness.run_steps(200);
         set(&mut harness, "Field of view", text);
-        assert_eq!(vfov(&harness), expected, "{text}");
+        let told = harness.query_all_by_label_contains(" to 179").next().is_some();
+        assert_eq!((vfov(&harness), told), (expected, is_refused), "{text}");
     }
     // Escape takes back what was typed.
     field(&harness, "Field of view").click();

@@ -23,7 +23,7 @@ fn each_press_counts_and_a_dialog_gets_the_keys_that_follow() {
     let dialog = vec![key(Key::P, Modifiers::COMMAND), plain(Key::M)];
     assert_eq!(taken(dialog, &context), (vec![Command::Palette], false));
     let copied = vec![egui::Event::Copy, egui::Event::Text("c".to_owned())];
-    assert_eq!(taken(copied, &context).0, [Command::CopyPicture]);
+    assert_eq!(taken(copied, &context).0, [Command::Copy]);
 }
 
 #[test]

@@ -29,4 +29,4 @@ mod read;
 mod write;
 
 pub use read::{load, parse};
-pub use write::{to_picture_toml, to_toml};
+pub use write::{sphere_to_toml, to_picture_toml, to_toml};

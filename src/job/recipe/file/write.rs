@@ -4,7 +4,7 @@ use super::named::{mark, name_of};
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderSettings;
 use crate::scene::animation::Keyframe;
-use crate::scene::{Camera, NamedMaterial, Parameter, Scene, Sphere, toml_key, toml_string};
+use crate::scene::{Camera, Material, NamedMaterial, Parameter, Scene, Sphere, toml_key, toml_string};
 use crate::stages::Rules;
 use glam::DVec3;
 
@@ -90,13 +90,23 @@ fn rules(rules: &Rules) -> String {
     format!("\n[rules] # where they differ from the finished renderer's\n{lines}")
 }
 
-fn material_line(named: &NamedMaterial) -> String {
-    let keys = named.material.parameters().into_iter().map(|(key, parameter)| match parameter {
+fn material_line(NamedMaterial { name, material }: &NamedMaterial) -> String {
+    format!("{} = {}\n", toml_key(name), inline(material))
+}
+
+fn inline(material: &Material) -> String {
+    let keys = material.parameters().into_iter().map(|(key, parameter)| match parameter {
         Parameter::Number(value) => format!("{key} = {}", number(value)),
         Parameter::Colour(colour) => format!("{key} = {}", vector(colour)),
     });
     let keys = keys.collect::<Vec<_>>().join(", ");
-    format!("{} = {{ kind = \"{}\", {keys} }}\n", toml_key(&named.name), named.material.kind())
+    format!("{{ kind = \"{}\", {keys} }}", material.kind())
+}
+
+/// A sphere and its material as a table that any scene file can end with.
+pub fn sphere_to_toml(center: DVec3, radius: f64, material: &Material) -> String {
+    let (center, radius, material) = (vector(center), number(radius), inline(material));
+    format!("[[spheres]]\ncenter = {center}\nradius = {radius}\nmaterial = {material}\n")
 }
 
 fn vector(v: DVec3) -> String {

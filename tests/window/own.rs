@@ -1,0 +1,147 @@
+//! One's own world: a new scene, the list of spheres, and spheres as text.
+
+use crate::common::{control, has_samples, open, open_sized, send, until};
+use crate::objects::{metal_sphere, opened, select, spheres};
+use crate::questions::Ask as _;
+use eframe::egui::{self, Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::NodeT;
+use weekender::app::{Command, Window};
+use weekender::job::recipe::file;
+
+#[test]
+fn a_new_scene_has_a_ball_on_the_ground_and_undo_returns() {
+    let mut harness = open("--stage metal --size 32x18 --device cpu");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::N);
+    harness.run_steps(3);
+    let document = harness.state().shown_document();
+    assert!(document.stage().is_none() && !document.has_own_size);
+    assert_eq!(document.scene().spheres.len(), 2);
+    let ball = document.pick(&document.camera, [0.5, 0.5]).unwrap().sphere;
+    let ground = document.pick(&document.camera, [0.5, 0.99]).unwrap().sphere;
+    assert_eq!((ball, ground), (1, 0));
+    until(&mut harness, "its picture", has_samples(1));
+    send(&mut harness, Command::Undo);
+    assert_eq!(harness.state().shown_document().stage().unwrap().id, "metal");
+}
+
+/// The numbers of the rows of the list that are drawn, counted from 1.
+fn rows(harness: &Harness<'_, Window>) -> Vec<usize> {
+    let nodes = harness.root().children_recursive().filter_map(|node| node.accesskit_node().label());
+    nodes.filter_map(|label| label.strip_prefix("Sphere ")?.split_once(',')?.0.parse().ok()).collect()
+}
+
+#[test]
+fn all_spheres_are_listed_found_and_selected() {
+    let mut harness =
+        open_sized("--scene field:100000 --size 16x9 --samples 1 --device cpu", [1280.0, 800.0]);
+    harness.run_steps(2);
+    assert!(rows(&harness).is_empty());
+    send(&mut harness, Command::Field("Scene"));
+    harness.run_steps(20);
+    let first = rows(&harness);
+    assert!(first.len() < 20 && first.starts_with(&[1, 2, 3]), "{first:?}");
+    let name = harness
+        .root()
+        .children_recursive()
+        .find_map(|node| node.accesskit_node().label().filter(|label| label.starts_with("Sphere 3,")));
+    control(&harness, &name.unwrap()).click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().selected(), Some(2));
+    // What is selected elsewhere comes into sight.
+    send(&mut harness, Command::Sphere(70_000));
+    harness.run_steps(3);
+    let shown = rows(&harness);
+    assert!(shown.len() < 20 && shown.contains(&70_001), "{shown:?}");
+    control(&harness, "Find a sphere").click();
+    harness.run_steps(2);
+    control(&harness, "Find a sphere").type_text("99999");
+    harness.run_steps(3);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert_eq!((rows(&harness), harness.state().selected()), (vec![99_999], Some(99_998)));
+}
+
+/// The text that Ctrl+C copies.
+fn copied(harness: &mut Harness<'_, Window>) -> String {
+    harness.event(egui::Event::Copy);
+    harness.step();
+    let commands = &harness.output().platform_output.commands;
+    let text = commands.iter().find_map(|command| match command {
+        egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    });
+    text.unwrap_or_default()
+}
+
+fn paste(harness: &mut Harness<'_, Window>, text: &str) {
+    harness.run_steps(90);
+    harness.event(egui::Event::Paste(text.to_owned()));
+    harness.run_steps(3);
+}
+
+#[test]
+fn a_sphere_is_copied_and_pasted_as_text_of_a_scene_file() {
+    let mut harness = opened();
+    let (before, metal) = (spheres(&harness), metal_sphere(&harness));
+    select(&mut harness, metal);
+    let text = copied(&mut harness);
+    assert!(text.starts_with("[[spheres]]"), "{text}");
+    paste(&mut harness, &text);
+    let after = spheres(&harness);
+    assert_eq!((after.len(), harness.state().selected()), (before.len() + 1, Some(before.len())));
+    let (old, new) = (after[metal], after[before.len()]);
+    assert_eq!((new.radius, new.material), (old.radius, old.material));
+    assert!(new.center.distance(old.center) > 2.0 * old.radius, "beside it, where it is seen");
+
+    // Several at once, or a whole scene file, elsewhere.
+    let scene = file::to_toml(&harness.state().shown_document().recipe());
+    send(&mut harness, Command::NewScene);
+    paste(&mut harness, &format!("{text}\n{}", text.replace("radius = 0.5", "radius = 0.25")));
+    assert_eq!(spheres(&harness).len(), 4);
+    assert_eq!(spheres(&harness)[2], weekender::scene::Sphere { material: 2, ..old });
+    paste(&mut harness, &scene);
+    assert_eq!(spheres(&harness).len(), 4 + after.len());
+    send(&mut harness, Command::Undo);
+    send(&mut harness, Command::Undo);
+    assert_eq!(spheres(&harness).len(), 2);
+    // Copied from a scene file by hand.
+    let named = "[[spheres]]\ncenter = [2.5, 1.0, 0.0]\nradius = 1.0\nmaterial = \"ball\"\n";
+    paste(&mut harness, named);
+    assert_eq!(spheres(&harness)[2].material, 1);
+    paste(
+        &mut harness,
+        &format!("[materials]\nball = {{ kind = \"dielectric\", refraction_index = 1.5 }}\n{named}"),
+    );
+    assert_eq!(spheres(&harness)[3].material, 2);
+    send(&mut harness, Command::Undo);
+    send(&mut harness, Command::Undo);
+
+    for (text, reason) in [
+        ("a shopping list", "is not a sphere"),
+        ("[[spheres]]\ncenter = [0.0, 0.0]\n", "three numbers"),
+        (&text.replace("radius = ", "radius = -0.0 #"), "radius"),
+        ("[[spheres]]\ncenter = [0.0, 0.0, 0.0]\nradius = 1.0\nmaterial = \"none\"\n", "\"none\""),
+    ] {
+        paste(&mut harness, text);
+        let told = harness.state().messages().pop().unwrap_or_default();
+        assert!(told.starts_with("Not pasted: ") && told.contains(reason), "{told}");
+        assert_eq!(spheres(&harness).len(), 2);
+        harness.run_steps(2);
+    }
+}
+
+#[test]
+fn a_field_of_text_pastes_for_itself() {
+    let mut harness = opened();
+    let metal = metal_sphere(&harness);
+    select(&mut harness, metal);
+    let (text, count) = (copied(&mut harness), spheres(&harness).len());
+    send(&mut harness, Command::Field("Scene"));
+    harness.run_steps(20);
+    control(&harness, "Find a sphere").click();
+    harness.run_steps(2);
+    assert_eq!(copied(&mut harness), "");
+    paste(&mut harness, &text);
+    assert_eq!(spheres(&harness).len(), count);
+}
