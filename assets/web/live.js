@@ -470,7 +470,7 @@ async function start(given) {
   document.addEventListener("visibilitychange", () => panels.forEach((panel) => panel.session?.wake()));
 }
 
-// What the first screen does not need may be in a file of its own.
+// Data and fonts that the first screen does not need can be in a file of their own.
 function load() {
   const onload = () => {
     const { fonts, live } = globalThis.later;
