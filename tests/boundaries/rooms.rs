@@ -20,7 +20,7 @@ batch: system scene stages film denoise job backends progressive cli
 pictures: system numbers scene stages film job kernel render_cpu render_gpu backends cli
 measure: system numbers scene stages film denoise job kernel render_cpu render_gpu backends cli pictures
 page: system numbers scene stages film denoise job kernel render_cpu render_gpu backends progressive cli batch pictures measure
-app: system numbers scene stages film denoise job render_cpu render_gpu backends progressive cli pictures measure page";
+app: system numbers scene stages film denoise job render_cpu render_gpu backends progressive cli batch pictures measure page";
 
 /// Crates that only some rooms may use.
 pub const CRATES: &[(&str, &[&str])] = &[
