@@ -42,6 +42,12 @@ fn an_animation_is_played_and_leaves_no_trace() {
         harness.run_steps(300);
         assert!(*harness.state().shown_document() == before, "{count}: at its end");
         assert_eq!(harness.state().disabled_reason(Command::Undo).is_none(), undone);
+        // Any command ends it first.
+        send(&mut harness, Command::Play);
+        harness.run_steps(30);
+        send(&mut harness, Command::Fit);
+        assert!(*harness.state().shown_document() == before, "{count}: ended by a command");
+        assert_eq!(harness.state().disabled_reason(Command::Undo).is_none(), undone);
         // Who moves the camera has it.
         send(&mut harness, Command::Play);
         harness.run_steps(30);

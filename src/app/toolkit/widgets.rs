@@ -417,7 +417,13 @@ impl<'a> Number<'a> {
 
     fn text(&self, n: f64) -> String {
         let scale = self.scale.max(n.abs());
-        if self.is_whole { with_minus(&format!("{n:.0}")) } else { compact(rounded(n, scale, 5)) }
+        if self.is_whole {
+            return with_minus(&format!("{n:.0}"));
+        }
+        // Three fields side by side have room for six characters.
+        let text = compact(rounded(n, scale, 5));
+        let is_long = !self.prefix.is_empty() && text.chars().count() > 6;
+        if is_long { compact(rounded(n, scale, 4)) } else { text }
     }
 }
 
@@ -652,5 +658,9 @@ mod tests {
         }
         assert_eq!(point_words(DVec3::new(12.974, 2.08e-17, -3.0)), "13, 0, −3");
         assert_eq!(point_words(DVec3::ZERO), "0, 0, 0");
+        let number = Number::new(About::new("", ""), -9.0..=9.0);
+        assert_eq!([-0.695_65, 2.087_12].map(|n| number.text(n)), ["−0.6957", "2.0871"]);
+        let beside = Number { scale: 2.0, ..number.letter("x ") };
+        assert_eq!([-0.695_65, 2.087_12].map(|n| beside.text(n)), ["−0.696", "2.0871"]);
     }
 }
