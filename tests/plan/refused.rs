@@ -42,7 +42,7 @@ fn changed_plan_or_other_version_is_refused() {
         (
             "\"sample_version\": 6",
             "\"sample_version\": 3",
-            &["version 3", "version 5", "another directory"][..],
+            &["version 3", "version 6", "another directory"][..],
         ),
         ("\"plan_version\": 1", "\"plan_version\": 7", &["version 7", "version 1"]),
         ("\"block\"", "\"blocks\"", &["plan.json is not a plan"]),
