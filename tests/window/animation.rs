@@ -82,7 +82,7 @@ fn written(path: &Path) -> std::time::SystemTime {
 }
 
 #[test]
-fn frames_are_saved_and_continued_by_the_window_and_the_command_line() {
+fn window_and_command_line_continue_frames() {
     let directory = tempfile::tempdir().unwrap();
     let (folder, scene) = (directory.path().join("film"), directory.path().join("own.toml"));
     let mut harness = bookmarked(3);
@@ -123,7 +123,7 @@ fn frames_are_saved_and_continued_by_the_window_and_the_command_line() {
 }
 
 #[test]
-fn an_animation_that_was_stopped_goes_on_when_it_is_saved_again() {
+fn stopped_animation_continues_when_saved_again() {
     let directory = tempfile::tempdir().unwrap();
     let folder = directory.path().join("turn");
     let mut harness = bookmarked(0);

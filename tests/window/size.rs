@@ -78,7 +78,7 @@ fn a_size_that_needs_much_memory_is_asked_about_first() {
 }
 
 #[test]
-fn a_panel_that_takes_room_from_the_picture_only_shows_it_smaller() {
+fn panels_only_show_the_picture_smaller() {
     let mut harness = following(FOLLOWING, [1280.0, 800.0]);
     settle(&mut harness);
     until(&mut harness, "the end", has_samples(2));

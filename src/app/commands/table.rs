@@ -156,7 +156,7 @@ table! {
     NewScene "New scene", "Begins a scene of your own: a ball on the ground", keys(CTRL, Key::N), also("create empty own");
     Open "Open…", "Opens a scene, a picture or a film, and resumes it", keys(CTRL, Key::O),
         also("load import resume");
-    CheckPicture "Check my picture…", "Finds the mistake in a picture that your own program has rendered",
+    CheckPicture "Check my picture…", "Finds the mistake in a picture that your own program rendered",
         also("wrong mistake homework verify compare");
     Save "Save…", "Saves the picture, the film or the scene", keys(CTRL, Key::S), line(),
         needs(is_live, KEPT_IS_SHOWN), also("save as export png ppm exr toml download film scene");

@@ -309,7 +309,7 @@ impl Autosave {
         {
             if std::thread::panicking() {
                 console::note(&format!(
-                    "{words}; the next window goes on with them, or {}",
+                    "{words}; the next window continues with them, or {}",
                     continued(&place.film())
                 ));
             }

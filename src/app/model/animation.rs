@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn bookmarks_are_passed_in_their_order_and_without_them_the_camera_turns() {
+    fn camera_follows_bookmarks_or_turns() {
         let document = with_bookmarks(3);
         let path = document.path(document.frame_count());
         assert_eq!(document.frame_count(), 121);
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn a_path_is_stretched_and_each_bookmark_keeps_a_frame_of_its_own() {
+    fn stretched_path_keeps_a_frame_for_each_bookmark() {
         for (count, frames, expected) in [
             (3, 241, vec![0, 120, 240]),
             (3, 3, vec![0, 1, 2]),

@@ -496,7 +496,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_is_checked_again_when_it_changes_and_in_the_next_window() {
+    fn a_changed_picture_is_checked_again() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("mine.ppm");
         old_file(&path, &tiny(0));

@@ -337,7 +337,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_of_another_size_or_shape_is_read_where_it_is_drawn() {
+    fn pictures_of_other_shapes_are_read_where_drawn() {
         for (at, mine, theirs, expected) in [
             ([7, 3], [32, 18], [32, 18], Some([7, 3])),
             ([7, 3], [32, 18], [64, 36], Some([15, 7])),

@@ -58,7 +58,7 @@ pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) ->
         ["timeline", stage] => timeline::figure(stage, uses),
         ["glossary"] => Ok(lists::glossary(site, place, uses)?),
         ["references"] => Ok(lists::references(site, place, uses)?),
-        _ => bail!("{{{{{directive}}}}} is no directive; use one of {KNOWN}"),
+        _ => bail!("{{{{{directive}}}}} is not a directive; use one of {KNOWN}"),
     }
 }
 

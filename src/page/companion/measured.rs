@@ -84,7 +84,7 @@ impl Measured {
             Value::Array(items) => items.iter().find(|item| is(item, key)),
             at => at.get(key),
         });
-        found.and_then(Value::as_f64).with_context(|| format!("{path} is no number of the measurements"))
+        found.and_then(Value::as_f64).with_context(|| format!("{path} is not a number in the measurements"))
     }
 
     /// The table with this name.
@@ -215,7 +215,7 @@ fn error_chart(kept: &Kept, uses: &mut Uses) -> Result<Markup> {
 fn report_of(kept: &Kept) -> Result<report::Data> {
     let json = kept.json.clone();
     let mut data: report::Data =
-        serde_json::from_value(json).context("is no report; make it with weekender report --out DIR")?;
+        serde_json::from_value(json).context("is not a report; make one with weekender report --out DIR")?;
     data.runs.retain(|run| !run.curve.is_denoised());
     Ok(data)
 }

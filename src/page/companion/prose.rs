@@ -375,7 +375,7 @@ impl Converter<'_> {
                 let kinds = "glossary:TERM, page:CHAPTER, live:STAGE?SLIDER=VALUE, source:PATH, [@REFERENCE] or https://";
                 let is_inline = link_type == LinkType::Inline;
                 let form = if is_inline { target.to_owned() } else { format!("[{target}]") };
-                bail!("{form:?} is no link of the page; use {kinds}");
+                bail!("{form:?} is not a link of the page; use {kinds}");
             }
         };
         Ok((open, PreEscaped("</a>".to_owned())))

@@ -37,7 +37,7 @@ fn set(harness: &mut Harness<'_, PanelContext>, name: &str, text: &str) {
 }
 
 #[test]
-fn a_typed_number_is_applied_once_and_refused_beyond_its_limits() {
+fn typed_numbers_apply_once_within_limits() {
     let mut harness = panel("--stage book");
     let vfov = |harness: &Harness<'_, PanelContext>| harness.state().document().camera.vfov_degrees;
     field(&harness, "Field of view").click();
