@@ -11,6 +11,9 @@ const HIGHEST: i32 = 8;
 
 const BINS: usize = (HIGHEST - LOWEST) as usize * BINS_PER_STOP;
 
+/// Half a step of 8 bits. Values that exceed white by less, as rounding and denoising make them of white sky, lose nothing.
+const HALF_STEP: f64 = 0.5 / 255.0;
+
 /// Counts of pixels by linear radiance, for each channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Histogram {
@@ -38,7 +41,7 @@ impl Histogram {
                 bins[bin(value)] += 1;
             }
             let brightest = mean.into_iter().fold(0.0, f64::max);
-            clipped += u32::from(brightest > white);
+            clipped += u32::from(brightest > white * (1.0 + HALF_STEP));
             largest = largest.max(brightest);
         }
         Histogram { bins, pixels, clipped, largest }

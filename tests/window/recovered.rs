@@ -12,7 +12,7 @@ use weekender::app::{Command, Device, Dock, Show, Theme, Window};
 use weekender::cli::{self, Request, WindowOptions};
 use weekender::film::checkpoint;
 use weekender::progressive::Stop;
-use weekender::stages::Stage;
+use weekender::stages::{Means, Stage};
 
 const PICTURE: &str = "--stage glass-schlick --size 32x18 --device cpu --vfov 31";
 
@@ -148,6 +148,17 @@ fn no_window_begins_in_full_screen() {
     stored.set_string("window", "(fullscreen:true,maximized:false)".to_owned());
     remembering("--stage metal --size 16x9", &stored).state_mut().save(&mut stored);
     assert_eq!(stored.get_string("window").unwrap(), "(fullscreen:false,maximized:false)");
+}
+
+#[test]
+fn what_show_me_shows_is_not_remembered() {
+    let mut stored = Stored::default();
+    let sky = Stage::ALL.iter().find(|stage| matches!(stage.sight.means, Means::Luminance(_))).unwrap();
+    let mut harness = remembering(&format!("--stage {}", sky.id), &stored);
+    send(&mut harness, Command::ShowMe);
+    assert_eq!(harness.state().show(), Show::Luminance);
+    harness.state_mut().save(&mut stored);
+    assert_eq!(remembering("--device cpu", &stored).state().show(), Show::Picture);
 }
 
 #[test]

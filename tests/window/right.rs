@@ -63,6 +63,10 @@ fn a_picture_of_another_program_is_checked() {
     control(&harness, "Go to 2.2").click();
     harness.run_steps(3);
     assert_eq!(harness.state().shown_document().stage().unwrap().section, "2.2");
+    assert!(harness.query_by_label("Picture").is_some(), "the stage that was chosen is shown");
+    control(&harness, "Check").click();
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Picture").is_none());
     control(&harness, "Close").click();
     harness.run_steps(3);
     assert!(harness.state().checked().is_none() && harness.query_by_label("Picture").is_some());

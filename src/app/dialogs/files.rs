@@ -245,12 +245,12 @@ impl SaveBox {
 
     /// How long an animation is, and how fine.
     fn film(&mut self, ui: &mut Ui, snapshot: &Snapshot) {
-        for (name, help, count, most) in [
-            ("Frames", "30 make a second", &mut self.frames, FRAME_LIMIT),
-            ("Samples", "Samples per pixel of each frame", &mut self.samples, u32::MAX),
+        for (name, help, count, least, most) in [
+            ("Frames", "30 make a second", &mut self.frames, 2.0, FRAME_LIMIT),
+            ("Samples", "Samples per pixel of each frame", &mut self.samples, 1.0, u32::MAX),
         ] {
             let about = About::new(name, help);
-            row(ui, about, |ui| Number::new(about, 2.0..=f64::from(most)).whole_field(ui, FIELD, count));
+            row(ui, about, |ui| Number::new(about, least..=f64::from(most)).whole_field(ui, FIELD, count));
         }
         let (size, paths) =
             (self.pixels(self.size, snapshot.document()), u64::from(self.samples) * u64::from(self.frames));

@@ -44,7 +44,10 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
         cx.send(Command::Sphere(*first));
     }
     if list.found.is_empty() {
-        hint(ui, "No sphere has these words.");
+        hint(
+            ui,
+            if list.text.is_empty() { "This scene has no spheres" } else { "No sphere has these words" },
+        );
     }
     ui.spacing_mut().item_spacing.y = 0.0;
     let mut area = ScrollArea::vertical().id_salt("spheres").max_height(HEIGHT).auto_shrink([false, true]);

@@ -147,7 +147,11 @@ fn compared(sides: &[Picture; 2], has_same_samples: bool) -> Result<Verdict, Str
             let place = worst.map_or_else(String::new, |block| {
                 format!(", most around column {}, row {}", middle(&block.x), middle(&block.y))
             });
-            ("More than noise.", format!("{share} % of the blocks differ clearly{place}."))
+            let words = match clear {
+                0 => "No block differs clearly alone, but all of them together do.".to_owned(),
+                _ => format!("{share} % of the blocks differ clearly{place}."),
+            };
+            ("More than noise.", words)
         }
     };
     Ok(Verdict { is_equal: Some(is_equal), headline, words })

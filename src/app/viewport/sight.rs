@@ -61,6 +61,10 @@ impl Sighted {
         !Arc::ptr_eq(&self.origin, &document.origin)
     }
 
+    pub fn before(&self) -> &ViewState {
+        &self.view
+    }
+
     /// Returns to what was shown before. A camera that was moved meanwhile stays.
     pub fn end(self, document: &mut Document, view: &mut ViewState, placement: &mut Placement) {
         if let Some(camera) = self.camera

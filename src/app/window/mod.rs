@@ -147,7 +147,7 @@ impl Window {
             has_picture: self.tracing.main.has_picture(self.document()),
             is_moving: self.changes.is_in_gesture,
             is_held: self.tracing.main.is_held(),
-            is_lost: self.display.is_lost,
+            is_lost: self.display.is_lost && self.model.playing.is_none(),
             checked: self.tools.check.words().filter(|_| self.model.shows(Tab::Check)),
             has_pixel: self.tools.inspector.hovered.is_some(),
             has_paths: self.tools.paths.len() > 0,
@@ -361,7 +361,8 @@ impl Window {
 
 impl eframe::App for Window {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        Stored::write(self.model.remembered.clone(), self.model.view.clone(), storage);
+        let view = self.display.sight.as_ref().map_or(&self.model.view, |sight| sight.before());
+        Stored::write(self.model.remembered.clone(), view.clone(), storage);
         Stored::forget_full_screen(storage);
     }
 

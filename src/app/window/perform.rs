@@ -284,6 +284,9 @@ impl Window {
         }
         self.model.document = document;
         self.model.selected = None;
+        if self.model.remembered.tab == Tab::Check {
+            self.model.remembered.tab = Tab::Stage;
+        }
         self.tools.forget();
     }
 
