@@ -52,7 +52,7 @@ fn chapter_errors_name_line() {
         ("{{code\nsrc/nothing.rs: fn a\n}}", "src/nothing.rs"),
         ("Here `no_such` is.\n\n{{code\nshaders/sphere.wgsl: fn chord\n}}", "`no_such` is not in the code"),
         ("{{mistakes sky\nno-such\n}}", "can have no mistake \"no-such\""),
-        ("{{value 2 speed/no-such}}", "speed/no-such is no number"),
+        ("{{value 2 speed/no-such}}", "speed/no-such is not a number"),
         ("[x](live:no-such?fuzz=1)", "no figure shows the stage \"no-such\""),
         ("{{figure sky\n[x](page:no-such)\n}}", "no chapter \"no-such\""),
         ("{{table no-such}}", "no measurement \"no-such\""),
