@@ -48,3 +48,11 @@ fn the_card_is_below_the_picture_and_stays_until_it_is_closed() {
     harness.run_steps(3);
     assert!(has_card(&harness));
 }
+
+#[test]
+fn a_new_scene_turns_no_page() {
+    let mut harness = first();
+    harness.state_mut().send(Command::NewScene);
+    harness.run_steps(3);
+    assert!(has_card(&harness) && harness.query_by_label("3, done").is_none());
+}

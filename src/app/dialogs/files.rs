@@ -144,7 +144,10 @@ impl SaveBox {
             size: Size::Seen,
             other: document.size(),
             frames: document.frame_count(),
-            samples: document.stop.samples.map_or(FRAME_SAMPLES, |samples| samples as u32),
+            samples: document
+                .stop
+                .samples
+                .map_or(FRAME_SAMPLES, |samples| samples.min(u32::MAX.into()) as u32),
         }
     }
 

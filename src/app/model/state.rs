@@ -65,7 +65,8 @@ impl Model {
     /// Notes which of the first steps were done since the document was as `before`.
     pub fn note_steps(&mut self, before: &Document) {
         let is_same = Arc::ptr_eq(&self.document.origin, &before.origin);
-        let done = [is_same && self.document.camera != before.camera, self.selected.is_some(), !is_same];
+        let is_moved = is_same && self.playing.is_none() && self.document.camera != before.camera;
+        let done = [is_moved, self.selected.is_some(), !is_same && self.document.stage().is_some()];
         self.steps_done.iter_mut().zip(done).for_each(|(step, is_done)| *step |= is_done);
     }
 
