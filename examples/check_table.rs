@@ -10,7 +10,7 @@ mod book;
 
 use book::Book;
 use std::time::Instant;
-use weekender::pictures::check::{Mine, judge};
+use weekender::comparison::check::{Mine, judge};
 use weekender::stages::Stage;
 
 /// Mistakes, each with a stage in which it shows.

@@ -17,6 +17,8 @@ pub mod batch;
 #[doc(hidden)]
 pub mod cli;
 #[doc(hidden)]
+pub mod comparison;
+#[doc(hidden)]
 pub mod denoise;
 #[doc(hidden)]
 pub mod film;
@@ -31,9 +33,7 @@ pub mod measure;
 pub mod numbers;
 #[doc(hidden)]
 #[cfg(not(target_family = "wasm"))]
-pub mod page;
-#[doc(hidden)]
-pub mod pictures;
+pub mod pages;
 #[doc(hidden)]
 pub mod prepared;
 #[doc(hidden)]

@@ -5,7 +5,7 @@
 use std::process::ExitCode;
 use weekender::batch::{self, info, merge};
 use weekender::cli::{self, Command, Request, terminal};
-use weekender::pictures::{check, compare, diff};
+use weekender::comparison::{check, compare, diff};
 use weekender::system::failure::Failure;
 use weekender::system::{interrupt, journal};
 
@@ -64,7 +64,7 @@ fn run() -> Result<ExitCode, Failure> {
 #[cfg(not(target_family = "wasm"))]
 fn run_tool(command: Command) -> Result<ExitCode, Failure> {
     use weekender::measure::{bench, report, stress};
-    use weekender::page::{companion, gallery};
+    use weekender::pages::{companion, gallery};
     match command {
         Command::Bench(options) => bench::run(&options),
         Command::Report(options) => report::run(&options),

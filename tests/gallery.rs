@@ -10,7 +10,7 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
-use weekender::page::gallery::Figure;
+use weekender::pages::gallery::Figure;
 use weekender::stages::Stage;
 
 fn command(at: &Path, arguments: &[&str]) -> Command {

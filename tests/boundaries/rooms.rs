@@ -17,14 +17,14 @@ backends: system scene stages film job kernel render_cpu render_gpu
 progressive: system numbers scene stages film denoise job backends
 cli: system scene stages film job render_cpu render_gpu backends progressive
 batch: system scene stages film denoise job backends progressive cli
-pictures: system numbers scene stages film job kernel render_cpu render_gpu backends cli
-measure: system numbers scene stages film denoise job kernel render_cpu render_gpu backends cli pictures
-page: system numbers scene stages film denoise job kernel render_cpu render_gpu backends progressive cli batch pictures measure
-app: system numbers scene stages film denoise job render_cpu render_gpu backends progressive cli batch pictures measure page";
+comparison: system numbers scene stages film job kernel render_cpu render_gpu backends cli
+measure: system numbers scene stages film denoise job kernel render_cpu render_gpu backends cli comparison
+pages: system numbers scene stages film denoise job kernel render_cpu render_gpu backends progressive cli batch comparison measure
+app: system numbers scene stages film denoise job render_cpu render_gpu backends progressive cli batch comparison measure pages";
 
 /// Crates that only some rooms may use.
 pub const CRATES: &[(&str, &[&str])] = &[
-    ("base64", &["page"]),
+    ("base64", &["pages"]),
     ("egui", &["app"]),
     ("eframe", &["app"]),
     ("egui_plot", &["app"]),
@@ -32,19 +32,19 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("wgpu", &["render_gpu"]),
     (
         "rayon",
-        &["system", "denoise", "prepared", "render_cpu", "render_gpu", "backends", "pictures", "measure"],
+        &["system", "denoise", "prepared", "render_cpu", "render_gpu", "backends", "comparison", "measure"],
     ),
     ("fearless_simd", &["denoise", "render_cpu"]),
     ("obvhs", &["prepared"]),
     ("libm", &["numbers", "scene"]),
-    ("image", &["job", "pictures", "page", "app"]),
+    ("image", &["job", "comparison", "pages", "app"]),
     ("indicatif", &["system", "cli", "measure"]),
-    ("maud", &["page"]),
+    ("maud", &["pages"]),
     ("plotters", &["numbers"]),
     ("clap", &["system", "job", "cli"]),
     ("env_filter", &["system"]),
     ("signal_hook", &["system"]),
-    ("pulldown_cmark", &["page"]),
-    ("syntect", &["page"]),
-    ("math_core", &["page"]),
+    ("pulldown_cmark", &["pages"]),
+    ("syntect", &["pages"]),
+    ("math_core", &["pages"]),
 ];

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 use tempfile::TempDir;
-use weekender::pictures::check::{AnswerKind, Finding, Mine, judge};
+use weekender::comparison::check::{AnswerKind, Finding, Mine, judge};
 use weekender::stages::Stage;
 
 fn checked(name: &str, stage: Option<&str>) -> (Mine, Finding) {

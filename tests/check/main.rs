@@ -10,7 +10,7 @@ use book::Book;
 use program_common::{ends, json_file, refused};
 use std::fmt::Write;
 use tempfile::TempDir;
-use weekender::pictures::check::{Finding, Mine, judge};
+use weekender::comparison::check::{Finding, Mine, judge};
 use weekender::stages::Stage;
 
 fn mine(stage: &'static str, mistake: &'static str, samples: u32, seed: u64) -> Mine {

@@ -2,12 +2,12 @@
 
 use std::process::Command;
 use std::sync::atomic::AtomicBool;
+use weekender::comparison::Picture;
+use weekender::comparison::compare::compare;
 use weekender::film::{Film, SampleRanges};
 use weekender::job::recipe::Recipe;
 use weekender::job::render::{RenderError, RenderJob, Renderer, SamplerKind};
 use weekender::measure::baseline::{Baseline, FLAGS, SOURCE};
-use weekender::pictures::Picture;
-use weekender::pictures::compare::compare;
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
 use weekender::scene::Camera;
 use weekender::scene::builtin::metals;

@@ -3,11 +3,11 @@
 use crate::common::*;
 use glam::DVec3;
 use std::sync::OnceLock;
+use weekender::comparison::Picture;
+use weekender::comparison::compare::compare;
 use weekender::film::Film;
 use weekender::job::recipe::Recipe;
 use weekender::job::render::{RenderJob, RenderSettings, SamplerKind};
-use weekender::pictures::Picture;
-use weekender::pictures::compare::compare;
 use weekender::scene::Camera;
 use weekender::scene::builtin::{LeftSphere, three_spheres};
 

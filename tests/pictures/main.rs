@@ -6,12 +6,12 @@ mod pipes;
 mod program_common;
 
 use std::path::{Path, PathBuf};
+use weekender::comparison::Picture;
+use weekender::comparison::check::Mine;
+use weekender::comparison::compare::{Comparison, compare_sides};
 use weekender::film::{CheckpointError, checkpoint};
 use weekender::job::output::{Encoding, Values, decode_picture, read_picture};
 use weekender::job::saved::{self, OpenError};
-use weekender::pictures::Picture;
-use weekender::pictures::check::Mine;
-use weekender::pictures::compare::{Comparison, compare_sides};
 use weekender::stages::Transfer;
 
 fn file(name: &str) -> PathBuf {

@@ -11,7 +11,7 @@ use std::process::{Command, Stdio};
 use weekender::job::render::RenderJob;
 use weekender::kernel::sampling::{SampleBlock, pcg4d};
 use weekender::kernel::{CameraTable, words_of};
-use weekender::page::web;
+use weekender::pages::web;
 use weekender::render_gpu::Exported;
 use weekender::render_gpu::shader_source::{EntryPoint, source};
 use weekender::scene::{Camera, Material, Scene};

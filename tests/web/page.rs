@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use weekender::job::render::{RenderJob, RenderSettings, Renderer};
-use weekender::page::web;
+use weekender::pages::web;
 use weekender::stages::{Setup, Stage};
 
 /// The script of live figures.

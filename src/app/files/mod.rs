@@ -18,7 +18,7 @@ use crate::job::output::{Description, OutputFormat, is_named_picture, key, write
 use crate::job::recipe::file;
 use crate::job::render::RenderJob;
 use crate::job::saved::{OpenError, Opened, SavedFilm, open, resume};
-use crate::page::companion;
+use crate::pages::companion;
 use crate::progressive::describe::describe;
 use crate::progressive::{Phase, Status};
 use crate::render_cpu::CpuOptions;

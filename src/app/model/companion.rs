@@ -1,6 +1,6 @@
 //! The address of a stage in the companion, the page that `weekender companion` writes.
 
-use crate::page::gallery::Figure;
+use crate::pages::gallery::Figure;
 use crate::stages::Stage;
 use std::path::Path;
 

@@ -1,9 +1,9 @@
 //! The pictures that the user has kept to compare with, and those of files. They live in memory until the window closes.
 
 use super::Document;
+use crate::comparison::Picture;
 use crate::film::{Film, fixed_point};
 use crate::job::output::Encoding;
-use crate::pictures::Picture;
 use crate::progressive::ReferenceMeans;
 use crate::stages::Transfer;
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureOptions};

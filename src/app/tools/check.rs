@@ -9,10 +9,10 @@ use crate::app::toolkit::widgets::{
     About, Header, command_button, entry, fold, hint, list, panel_line, primary, small, switch, tip,
 };
 use crate::app::toolkit::{Answers, Texture, caught, overlay, theme};
-use crate::numbers::heat::HeatScale;
-use crate::pictures::check::{
+use crate::comparison::check::{
     Answer, AnswerKind, Damage, Finding, Mine, POLL_INTERVAL, Watched, judge_again, pictures,
 };
+use crate::numbers::heat::HeatScale;
 use crate::stages::Stage;
 use eframe::egui::text::LayoutJob;
 use eframe::egui::{

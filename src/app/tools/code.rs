@@ -4,7 +4,7 @@ use crate::app::commands::Snapshot;
 use crate::app::panels::right::scrolling;
 use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{About, hint, small, switch, tip};
-use crate::page::companion::{Excerpt, Highlighter, excerpts_between};
+use crate::pages::companion::{Excerpt, Highlighter, excerpts_between};
 use crate::stages::Stage;
 use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{FontSelection, Frame, Grid, Label, Margin, RichText, Sides, TextStyle, Ui};

@@ -1,7 +1,7 @@
 //! Measures films and judges them by the expected result.
 
+use crate::comparison::compare::half_differences;
 use crate::film::Film;
-use crate::pictures::compare::half_differences;
 use serde::Serialize;
 
 /// Standard errors by which noise may move a mean; one mean in sixteen thousand moves further.

@@ -1,7 +1,7 @@
 //! What the texts have referred to so far.
 
 use super::picture::Picture;
-use crate::page::gallery::Figure;
+use crate::pages::gallery::Figure;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The references that the texts have made so far.

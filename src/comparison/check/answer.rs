@@ -4,7 +4,7 @@ use super::hypothesis::{Compared, Fit, Hypothesis, compare};
 use super::tracer::{Steps, Tracer};
 use super::written::Seen;
 use super::{Damage, Finding, Mine};
-use crate::pictures::answer::Verdict;
+use crate::comparison::answer::Verdict;
 use crate::scene::{Scene, Sphere};
 use crate::stages::{Shading, Stage, book_url, heading};
 use serde::Serialize;
@@ -333,7 +333,7 @@ fn capitalised(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pictures::check::MISTAKES;
+    use crate::comparison::check::MISTAKES;
 
     #[test]
     fn mistakes_link_to_their_own_sections() {

@@ -1,11 +1,11 @@
 //! A picture of the page's own: what to render, and how.
 
+use crate::comparison::check::{Hypothesis, Mistake, Studio};
 use crate::denoise;
 use crate::film::Checksum;
 use crate::film::checkpoint::SAMPLE_VERSION;
 use crate::job::recipe::{Recipe, file::to_toml};
 use crate::job::render::Renderer;
-use crate::pictures::check::{Hypothesis, Mistake, Studio};
 use crate::render_cpu::{CpuOptions, CpuRenderer};
 use crate::stages::Stage;
 use crate::system::files::replace_file;

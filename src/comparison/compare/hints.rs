@@ -1,7 +1,7 @@
 //! Changes of a picture that make it much closer to another: mistakes of a file rather than of the light.
 
+use crate::comparison::Picture;
 use crate::job::output::Encoding;
-use crate::pictures::Picture;
 use crate::stages::Transfer;
 
 /// A hint follows if a change leaves less than this share of the difference.

@@ -1,10 +1,10 @@
 //! Decides whether two pictures differ by more than noise and rounding.
 
+use crate::comparison::Picture;
+use crate::comparison::answer::Verdict;
 use crate::film::{Film, PixelSum};
 use crate::numbers::statistics::blocks::{Block, BlockTest, CHANCE, Differences, Noise, SUM_DEVIATIONS};
 use crate::numbers::statistics::normal::largest_of;
-use crate::pictures::Picture;
-use crate::pictures::answer::Verdict;
 use serde::Serialize;
 
 /// Largest effect of rounding on a mean: docs/numerics.md, cases 12 and 13.

@@ -4,7 +4,7 @@
 use super::picture::{NOISY_WIDTH, Picture, Tracer};
 use super::uses::Uses;
 use super::words::typographic;
-use crate::pictures::check::{MISTAKES, Mistake};
+use crate::comparison::check::{MISTAKES, Mistake};
 use crate::progressive::describe::counted;
 use crate::stages::Stage;
 use anyhow::{Context, Result};

@@ -6,7 +6,7 @@ use super::library::{Fault, line_of};
 use super::site::Site;
 use super::uses::Uses;
 use super::words::{code_words, typographic};
-use crate::page::gallery::Figure;
+use crate::pages::gallery::Figure;
 use crate::stages;
 use anyhow::{Context, Result, bail, ensure};
 use math_core::MathDisplay;

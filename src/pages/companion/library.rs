@@ -81,7 +81,7 @@ impl Library {
         let content = match self {
             Library::Embedded => {
                 FILES.iter().find(|(name, _)| *name == path).map(|(_, text)| Cow::Borrowed(*text)).ok_or_else(
-                    || "is not in the program; add it to FILES in src/page/companion/library.rs".to_owned(),
+                    || "is not in the program; add it to FILES in src/pages/companion/library.rs".to_owned(),
                 )
             }
             Library::Checkout(directory) => {

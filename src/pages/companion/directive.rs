@@ -10,7 +10,7 @@ use super::site::Site;
 use super::timeline;
 use super::uses::Uses;
 use super::words::{numbered, typographic};
-use crate::page::gallery::{Figure, is_about_pixels};
+use crate::pages::gallery::{Figure, is_about_pixels};
 use crate::stages::Stage;
 use crate::system::suggest::similar_names;
 use anyhow::{Context, Error, Result, bail};

@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn page_has_figures_and_placeholders() {
-        let page = page(&crate::page::gallery::still::stills_of(&["metal", "metal-fuzzy", "book"]));
+        let page = page(&crate::pages::gallery::still::stills_of(&["metal", "metal-fuzzy", "book"]));
         for figure in Figure::all() {
             assert_eq!(page.matches(&format!("id=\"figure-{}\"", figure.id)).count(), 1, "{}", figure.id);
             let chapter = format!("<section id=\"chapter-{}\">", figure.stage().chapter());

@@ -24,7 +24,7 @@ pub use excerpt::{Excerpt, excerpts_between};
 pub use highlight::Highlighter;
 
 use crate::cli::CompanionOptions;
-use crate::page::gallery::{Order, Outcome, Work};
+use crate::pages::gallery::{Order, Outcome, Work};
 use crate::system::failure::Failure;
 use crate::system::files::{make_directory, write_text};
 use crate::system::interrupt::Interrupt;
