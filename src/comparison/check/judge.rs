@@ -449,7 +449,7 @@ fn fits(candidates: &[Candidate], index: usize, recipe: &Recipe) -> bool {
     if own.recipe.rules.antialiasing {
         let width = seen.size[0] as usize;
         let sides = [[1, 0], [-1, 0], [0, 1], [0, -1]];
-        let changed = |change: &dyn Fn(f64, &dyn Fn([isize; 2]) -> f64) -> f64| {
+        let changed = |change: &dyn Fn(f64, Neighbour) -> f64| {
             found.rendered.map(|half| neighbours(half, width, change))
         };
         let moved = |by: [isize; 2]| changed(&|at, of| at + 0.5 * (of(by) - of(by.map(|x| -x))));
@@ -501,12 +501,11 @@ fn as_read(rendered: &Rendered, from: &Written, to: &Written, [width, height]: [
     })
 }
 
+/// The value beside a pixel, at this offset.
+type Neighbour<'a> = &'a dyn Fn([isize; 2]) -> f64;
+
 /// Maps each value and its neighbours; the border is unchanged.
-fn neighbours(
-    pixels: &[[f64; 3]],
-    width: usize,
-    change: impl Fn(f64, &dyn Fn([isize; 2]) -> f64) -> f64,
-) -> Vec<[f64; 3]> {
+fn neighbours(pixels: &[[f64; 3]], width: usize, change: impl Fn(f64, Neighbour) -> f64) -> Vec<[f64; 3]> {
     let height = pixels.len() / width;
     let at = |index: usize| {
         let (x, y) = (index % width, index / width);
