@@ -36,7 +36,7 @@ fn check(progressive: Progressive, case: &str) {
     assert!(!case.contains("Hang") || joined.contains("has not responded"), "{case}: {joined}");
     let by_cpu = status.contributions.iter().find(|part| part.backend.name == "cpu");
     assert!(by_cpu.is_some_and(|part| part.samples_per_pixel > 0), "{case}: {status:?}");
-    assert_eq!(progressive.finish().unwrap().samples().to_string(), "0..64", "{case}");
+    assert_eq!(progressive.take_film().unwrap().samples().to_string(), "0..64", "{case}");
 }
 
 #[test]
@@ -86,6 +86,6 @@ fn new_job_starts_while_device_hangs() {
     }
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::Samples), "{status:?}");
-    let film = progressive.finish().unwrap();
+    let film = progressive.take_film().unwrap();
     assert_eq!((film.width(), film.sample_count()), (32, 64));
 }

@@ -1,7 +1,7 @@
 //! Several renderers working on one film. Each takes more samples when it finishes, so faster ones take more.
 
 use super::close;
-use crate::film::{Film, FilmError};
+use crate::film::Film;
 use crate::job::render::{
     BackendInfo, Control, Diagnostics, KernelInfo, Outcome, RenderError, RenderJob, Renderer, Stats,
 };
@@ -164,9 +164,7 @@ impl Renderer for Together {
         &Control { cancel, .. }: &Control,
     ) -> Result<Outcome, RenderError> {
         let begin = Instant::now();
-        if let Some(range) = film.samples().overlap(&range) {
-            return Err(FilmError::Overlap { range }.into());
-        }
+        film.samples().check_new(&range)?;
         let grain = film.halves().len() as u64;
         let left = std::iter::once(range).filter(|range| !range.is_empty()).collect();
         let mut pieces = Mutex::new(Pieces { left, grain, speeds: Vec::new() });

@@ -8,12 +8,12 @@ use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// The answer to "are these two the same?"
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The answer to "are these two the same?" The worst comes last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     Same,
-    Different,
     Unclear,
+    Different,
 }
 
 impl Verdict {

@@ -81,6 +81,12 @@ impl SampleRanges {
         (!both.is_empty()).then_some(both)
     }
 
+    /// # Errors
+    /// [`FilmError::Overlap`] if part of `range` is in the set.
+    pub fn check_new(&self, range: &Range<u64>) -> Result<(), FilmError> {
+        self.overlap(range).map_or(Ok(()), |range| Err(FilmError::Overlap { range }))
+    }
+
     /// The first contiguous range of samples that both sets have.
     pub fn first_common(&self, other: &SampleRanges) -> Option<Range<u64>> {
         let (few, many) = if self.ranges.len() < other.ranges.len() { (self, other) } else { (other, self) };

@@ -2,8 +2,8 @@
 //! backend or changes the job.
 //!
 //! Commands are sent through a channel and obeyed between passes. The thread publishes a small [`Status`] and, on
-//! request, a [`Picture`]. Only [`Progressive::wait`], [`Progressive::take_film`], [`Progressive::finish`] and dropping
-//! the handle wait for the renderer; no other call blocks.
+//! request, a [`Picture`]. Only [`Progressive::wait`], [`Progressive::take_film`] and dropping the handle
+//! wait for the renderer; no other call blocks.
 
 pub mod describe;
 
@@ -218,11 +218,6 @@ impl Progressive {
         receiver.recv().ok().flatten()
     }
 
-    /// Like [`Progressive::take_film`], and ends the thread.
-    pub fn finish(self) -> Option<Film> {
-        self.take_film()
-    }
-
     /// Sends a command. A dead thread has reported its end in the status, so a failed send can be ignored.
     fn send(&self, command: RenderCommand) {
         let _ = self.commands.send(command);
@@ -265,7 +260,7 @@ mod tests {
                     progressive.stop();
                 }
             });
-            (status.phase, progressive.finish().unwrap())
+            (status.phase, progressive.take_film().unwrap())
         };
         let done = Phase::Done(EndReason::Samples);
         let (phase, film) = render(false, false);

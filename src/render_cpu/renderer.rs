@@ -9,7 +9,7 @@ use super::priority::give_way;
 use super::rebuild::Rebuild;
 use super::tiles::tile_side;
 use super::work::TileStats;
-use crate::film::{Film, FilmError};
+use crate::film::Film;
 use crate::job::render::{
     BackendInfo, Control, Diagnostics, KernelInfo, Outcome, RenderError, RenderJob, Renderer, Stats,
     TileOccupancy,
@@ -169,9 +169,7 @@ impl Renderer for CpuRenderer {
     ) -> Result<Outcome, RenderError> {
         self.prepare(job, cancel)?;
         self.take_better_hierarchy(job);
-        if let Some(range) = film.samples().overlap(&range) {
-            return Err(FilmError::Overlap { range }.into());
-        }
+        film.samples().check_new(&range)?;
         let start = Instant::now();
         let side = tile_side(film.width(), film.height(), self.threads.count());
         let stop = StopRequest::when(stop);

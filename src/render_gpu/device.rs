@@ -79,15 +79,10 @@ impl Layouts {
 /// An open device; clones share it.
 #[derive(Clone, Debug)]
 pub struct Gpu {
-    /// The adapter that the device belongs to.
     pub adapter: AdapterInfo,
-    /// The wgpu device.
     pub device: wgpu::Device,
-    /// The device's queue.
     pub queue: wgpu::Queue,
-    /// The bind group layouts.
     pub layouts: Layouts,
-    /// The device's failures.
     pub faults: Arc<Faults>,
     /// How long to wait for the device before giving it up.
     patience: Duration,

@@ -4,7 +4,7 @@
 use super::device::Gpu;
 use super::failed;
 use super::layout::{GpuBlock, GpuCounters, GpuDispatch, tile_size};
-use super::readback::{Mapping, request_mapping, view};
+use super::readback::Staging;
 use super::schedule::BLOCK_LIMIT;
 use crate::film::{Film, PixelSum, SampleRanges};
 use crate::job::render::{RenderError, RenderSettings, Stats};
@@ -33,7 +33,7 @@ pub struct Slab {
     /// Group 1: the bindings of a dispatch that traces these rows.
     pub group: wgpu::BindGroup,
     sums: wgpu::Buffer,
-    staging: wgpu::Buffer,
+    staging: Staging,
 }
 
 /// A readback in progress.
@@ -41,8 +41,6 @@ struct Readback {
     samples: SampleRanges,
     trace: Duration,
     submission: wgpu::SubmissionIndex,
-    slabs: Vec<Mapping>,
-    counters: Mapping,
 }
 
 /// The buffers of a film, and which samples they contain.
@@ -56,14 +54,12 @@ pub struct FilmBuffers {
     pub blocks: wgpu::Buffer,
     /// The counters of dispatches: [`GpuCounters`].
     pub counters: wgpu::Buffer,
-    counters_staging: wgpu::Buffer,
+    counters_staging: Staging,
     traced: SampleRanges,
     trace: Duration,
     readback: Option<Readback>,
     read_back_at: Instant,
     readback_took: Duration,
-    /// Number of readbacks.
-    pub readbacks: u64,
     /// Total time that the host spent adding sums.
     pub readbacks_took: Duration,
 }
@@ -93,21 +89,20 @@ impl FilmBuffers {
 
         use wgpu::BufferUsages as Usages;
         let copied = Usages::STORAGE | Usages::COPY_SRC | Usages::COPY_DST;
-        let read = Usages::MAP_READ | Usages::COPY_DST;
         let parameters_size = size_of::<GpuDispatch>() as u64;
         let parameters = gpu.buffer("dispatch", parameters_size, Usages::UNIFORM | Usages::COPY_DST)?;
         let blocks_size = (BLOCK_LIMIT * size_of::<GpuBlock>()) as u64;
         let blocks = gpu.buffer("blocks", blocks_size, Usages::STORAGE | Usages::COPY_DST)?;
         let counters_size = size_of::<GpuCounters>() as u64;
         let counters = gpu.buffer("counters", counters_size, copied)?;
-        let counters_staging = gpu.buffer("counters, read", counters_size, read)?;
+        let counters_staging = Staging::new(gpu, "counters, read", counters_size)?;
         let mut slabs = Vec::new();
         let mut first_row = 0;
         while first_row < height {
             let row_count = slab_rows.min(height - first_row);
             let size = row_size * u64::from(row_count);
             let sums = gpu.buffer("film", size, copied)?;
-            let staging = gpu.buffer("film, read", size, read)?;
+            let staging = Staging::new(gpu, "film, read", size)?;
             let group = gpu.bind(&gpu.layouts.dispatch, &[&parameters, &blocks, &sums, &counters]);
             slabs.push(Slab { first_row, row_count, group, sums, staging });
             first_row += row_count;
@@ -124,7 +119,6 @@ impl FilmBuffers {
             readback: None,
             read_back_at: Instant::now(),
             readback_took: Duration::ZERO,
-            readbacks: 0,
             readbacks_took: Duration::ZERO,
         })
     }
@@ -137,12 +131,8 @@ impl FilmBuffers {
     /// Returns an error if any of these samples are in `film` or on the device.
     pub fn check_new(&self, range: &Range<u64>, film: &Film) -> Result<(), RenderError> {
         let readback = self.readback.as_ref().map(|readback| &readback.samples);
-        for held in [film.samples(), &self.traced].into_iter().chain(readback) {
-            if let Some(range) = held.overlap(range) {
-                return Err(crate::film::FilmError::Overlap { range }.into());
-            }
-        }
-        Ok(())
+        let mut all_held = [film.samples(), &self.traced].into_iter().chain(readback);
+        Ok(all_held.try_for_each(|held| held.check_new(range))?)
     }
 
     /// Records that the sums will contain `range` once the submitted work is done.
@@ -182,9 +172,8 @@ impl FilmBuffers {
 
     /// Discards everything traced. Sums of work in flight are cleared after that work.
     pub fn discard(&mut self, gpu: &Gpu) {
-        if self.readback.take().is_some() {
-            self.stagings().for_each(wgpu::Buffer::unmap);
-        }
+        self.readback = None;
+        self.stagings().for_each(Staging::release);
         self.traced = SampleRanges::default();
         self.trace = Duration::ZERO;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -199,15 +188,15 @@ impl FilmBuffers {
         }
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         for slab in &self.slabs {
-            encoder.copy_buffer_to_buffer(&slab.sums, 0, &slab.staging, 0, slab.sums.size());
+            encoder.copy_buffer_to_buffer(&slab.sums, 0, &slab.staging.buffer, 0, slab.sums.size());
         }
-        encoder.copy_buffer_to_buffer(&self.counters, 0, &self.counters_staging, 0, self.counters.size());
+        let counters = &self.counters;
+        encoder.copy_buffer_to_buffer(counters, 0, &self.counters_staging.buffer, 0, counters.size());
         self.clear(&mut encoder);
         let submission = gpu.queue.submit([encoder.finish()]);
-        let slabs = self.slabs.iter().map(|slab| request_mapping(&slab.staging)).collect();
-        let counters = request_mapping(&self.counters_staging);
+        self.stagings().for_each(Staging::request);
         let (samples, trace) = (std::mem::take(&mut self.traced), std::mem::take(&mut self.trace));
-        self.readback = Some(Readback { samples, trace, submission, slabs, counters });
+        self.readback = Some(Readback { samples, trace, submission });
     }
 
     /// Waits for the readback in progress and adds its samples to the film.
@@ -217,37 +206,12 @@ impl FilmBuffers {
     pub fn finish_readback(&mut self, gpu: &Gpu, film: &mut Film) -> Result<Stats, RenderError> {
         let Some(readback) = self.readback.take() else { return Ok(Stats::default()) };
         gpu.wait_unless(&readback.submission, None).map_err(failed)?;
-        let counters = view(&self.counters_staging, &readback.counters).map_err(failed)?;
-        let views =
-            self.slabs.iter().zip(&readback.slabs).map(|(slab, mapping)| view(&slab.staging, mapping));
-        let views = views.collect::<Result<Vec<_>, _>>().map_err(failed)?;
-        if let Some(range) = readback.samples.iter().find_map(|range| film.samples().overlap(&range)) {
-            drop((counters, views));
-            self.stagings().for_each(wgpu::Buffer::unmap);
-            return Err(crate::film::FilmError::Overlap { range }.into());
-        }
         let begin = Instant::now();
-        let sums = views.iter().map(|view| bytemuck::try_cast_slice(view));
-        let sums = sums.collect::<Result<Vec<&[u64]>, _>>();
-        let sums = sums.map_err(|error| failed(format!("reading results: {error}")))?;
-        let GpuCounters { rays, rays_high, rejected, rejected_high, .. } =
-            bytemuck::pod_read_unaligned(&counters);
-
-        // All data is on the host: nothing can fail from here on.
-        for (slab, sums) in self.slabs.iter().zip(sums) {
-            add_rows(film, slab.first_row, sums);
-        }
-        drop((counters, views));
-        self.stagings().for_each(wgpu::Buffer::unmap);
-        let wide = |low: u32, high: u32| u64::from(low) | u64::from(high) << 32;
-        let (rays, rejected) = (wide(rays, rays_high), wide(rejected, rejected_high));
-        let mut unrecorded = rejected;
-        for range in readback.samples.iter() {
-            film.record(range, std::mem::take(&mut unrecorded))?;
-        }
+        let added = self.add_to(film, &readback.samples);
+        self.stagings().for_each(Staging::release);
+        let [rays, rejected] = added?;
         self.read_back_at = Instant::now();
         self.readback_took = begin.elapsed();
-        self.readbacks += 1;
         self.readbacks_took += self.readback_took;
         let pixels = u64::from(film.width()) * u64::from(film.height());
         Ok(Stats {
@@ -260,6 +224,31 @@ impl FilmBuffers {
         })
     }
 
+    /// Adds what has been read back. Returns the rays and the rejected samples.
+    fn add_to(&self, film: &mut Film, samples: &SampleRanges) -> Result<[u64; 2], RenderError> {
+        samples.iter().try_for_each(|range| film.samples().check_new(&range))?;
+        let counters = self.counters_staging.view().map_err(failed)?;
+        let views = self.slabs.iter().map(|slab| slab.staging.view());
+        let views = views.collect::<Result<Vec<_>, _>>().map_err(failed)?;
+        let sums = views.iter().map(|view| bytemuck::try_cast_slice(view));
+        let sums = sums.collect::<Result<Vec<&[u64]>, _>>();
+        let sums = sums.map_err(|error| failed(format!("reading results: {error}")))?;
+        let GpuCounters { rays, rays_high, rejected, rejected_high, .. } =
+            bytemuck::pod_read_unaligned(&counters);
+
+        // All data is on the host: nothing can fail from here on.
+        for (slab, sums) in self.slabs.iter().zip(sums) {
+            add_rows(film, slab.first_row, sums);
+        }
+        let wide = |low: u32, high: u32| u64::from(low) | u64::from(high) << 32;
+        let [rays, rejected] = [wide(rays, rays_high), wide(rejected, rejected_high)];
+        let mut unrecorded = rejected;
+        for range in samples.iter() {
+            film.record(range, std::mem::take(&mut unrecorded))?;
+        }
+        Ok([rays, rejected])
+    }
+
     fn clear(&self, encoder: &mut wgpu::CommandEncoder) {
         for slab in &self.slabs {
             encoder.clear_buffer(&slab.sums, 0, None);
@@ -267,8 +256,8 @@ impl FilmBuffers {
         encoder.clear_buffer(&self.counters, 0, None);
     }
 
-    fn stagings(&self) -> impl Iterator<Item = &wgpu::Buffer> {
-        self.slabs.iter().map(|slab| &slab.staging).chain([&self.counters_staging])
+    fn stagings(&mut self) -> impl Iterator<Item = &mut Staging> {
+        self.slabs.iter_mut().map(|slab| &mut slab.staging).chain([&mut self.counters_staging])
     }
 }
 

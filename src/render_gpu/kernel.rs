@@ -22,9 +22,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// A compiled kernel.
 #[derive(Clone, Debug)]
 pub struct Kernel {
-    /// The compute pipeline.
     pub pipeline: wgpu::ComputePipeline,
-    /// Time spent compiling it.
     pub compile_time: Duration,
 }
 
@@ -32,7 +30,8 @@ type Key = (EntryPoint, Features);
 
 type Modules = Arc<Mutex<HashMap<EntryPoint, wgpu::ShaderModule>>>;
 
-enum Slot {
+/// A kernel in the cache.
+pub enum Slot {
     Compiling(Receiver<Result<Kernel, String>>, Instant),
     Done(Result<Kernel, String>),
 }
@@ -46,11 +45,7 @@ pub struct Kernels {
 
 impl Kernels {
     /// Starts compiling a kernel unless that has been done, without waiting for it.
-    pub fn begin(&mut self, gpu: &Gpu, key: Key) {
-        self.slot(gpu, key);
-    }
-
-    fn slot(&mut self, gpu: &Gpu, key: Key) -> &mut Slot {
+    pub fn begin(&mut self, gpu: &Gpu, key: Key) -> &mut Slot {
         let modules = &self.modules;
         self.slots.entry(key).or_insert_with(|| start(gpu.clone(), key, Arc::clone(modules)))
     }
@@ -61,7 +56,7 @@ impl Kernels {
     /// [`RenderError::Backend`] with the device's error. [`RenderError::Cancelled`] if the kernel is no longer wanted:
     /// it continues to compile, and the finished kernel stays in the cache.
     pub fn get(&mut self, gpu: &Gpu, key: Key, cancel: &AtomicBool) -> Result<Kernel, RenderError> {
-        self.slot(gpu, key).wait(&gpu.adapter, cancel)
+        self.begin(gpu, key).wait(&gpu.adapter, cancel)
     }
 }
 

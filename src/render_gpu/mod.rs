@@ -89,14 +89,12 @@ impl GpuRenderer {
 
     /// Figures of dispatches and readbacks so far.
     pub fn report(&self) -> GpuReport {
-        let film = |loaded: &Loaded| (loaded.film.readbacks, loaded.film.readbacks_took);
-        let (films, film_time) = self.loaded.as_ref().map_or((0, Duration::ZERO), film);
         GpuReport {
             dispatches: self.dispatches.count,
             dispatch_time: self.dispatches.time,
             timer: self.dispatches.timer(),
-            films,
-            film_time,
+            films: self.readbacks,
+            film_time: self.loaded.as_ref().map_or(Duration::ZERO, |loaded| loaded.film.readbacks_took),
         }
     }
 

@@ -45,9 +45,7 @@ pub enum InjectionPoint {
 /// A fault that is injected on purpose, to test that a render survives it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FaultInjection {
-    /// The kind of fault.
     pub fault: Fault,
-    /// The point where it is injected.
     pub point: InjectionPoint,
     /// How many events of that kind precede it.
     pub after: u64,
@@ -72,7 +70,6 @@ pub struct GpuOptions {
     pub film_limit: Option<u64>,
     /// How long to wait for the device before giving it up.
     pub patience: Duration,
-    /// A fault to inject.
     pub injection: Option<FaultInjection>,
 }
 
@@ -120,34 +117,16 @@ pub enum GpuError {
     None,
     /// No adapter matches the name.
     #[error("no adapter matches \"{wanted}\"; available adapters: {}", available.join("; "))]
-    NoMatch {
-        /// The requested name.
-        wanted: String,
-        /// The available adapters.
-        available: Vec<String>,
-    },
+    NoMatch { wanted: String, available: Vec<String> },
     /// Only software adapters were found.
     #[error("there is no GPU, only software adapters: {}; choose one by name, or render on the CPU, which is faster", available.join("; "))]
-    Software {
-        /// The available adapters.
-        available: Vec<String>,
-    },
+    Software { available: Vec<String> },
     /// The adapter cannot run the kernel.
     #[error("{adapter} has {lacks}; choose another adapter, or render on the CPU")]
-    Lacks {
-        /// Name of the adapter.
-        adapter: String,
-        /// The missing capability.
-        lacks: String,
-    },
+    Lacks { adapter: String, lacks: String },
     /// The adapter could not be opened.
     #[error("{adapter} could not be opened: {reason}; choose another adapter, or render on the CPU")]
-    Device {
-        /// Name of the adapter.
-        adapter: String,
-        /// The driver's error message.
-        reason: String,
-    },
+    Device { adapter: String, reason: String },
 }
 
 /// Figures of a renderer since it was created, for reports.
@@ -159,8 +138,8 @@ pub struct GpuReport {
     pub dispatch_time: Duration,
     /// The clock that measured them: "timestamp queries" or "wall clock".
     pub timer: &'static str,
-    /// Number of readbacks of the current film.
+    /// Readbacks of films that were requested.
     pub films: u64,
-    /// Total time that the host spent adding its sums.
+    /// Total time that the host spent adding the sums of the current film.
     pub film_time: Duration,
 }

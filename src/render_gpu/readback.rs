@@ -6,24 +6,46 @@ use std::mem::offset_of;
 use std::sync::mpsc::{self, Receiver};
 use std::time::Duration;
 
-/// Maps a staging buffer, which becomes available once the submitted work is done.
-pub fn request_mapping(staging: &wgpu::Buffer) -> Mapping {
-    let (sender, receiver) = mpsc::channel();
-    staging.map_async(wgpu::MapMode::Read, .., move |result| {
-        // There is no receiver if the samples were discarded, or after an error that was reported.
-        let _ = sender.send(result);
-    });
-    receiver
+/// A buffer through which the host reads results, once the work that copies them there is done.
+#[derive(Debug)]
+pub struct Staging {
+    pub buffer: wgpu::Buffer,
+    /// Receives a message when the buffer is mapped.
+    mapping: Option<Receiver<Result<(), wgpu::BufferAsyncError>>>,
 }
 
-/// Receives a message when a staging buffer is available.
-pub type Mapping = Receiver<Result<(), wgpu::BufferAsyncError>>;
+impl Staging {
+    /// # Errors
+    /// If the device runs out of memory.
+    pub fn new(gpu: &Gpu, label: &str, size: u64) -> Result<Self, String> {
+        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+        Ok(Staging { buffer: gpu.buffer(label, size, usage)?, mapping: None })
+    }
 
-/// The bytes of a mapped staging buffer, after the submitted work is done.
-pub fn view(staging: &wgpu::Buffer, mapping: &Mapping) -> Result<wgpu::BufferView, String> {
-    let mapped = mapping.try_recv().map_err(|_| "the device did not return its results".to_owned())?;
-    mapped.map_err(|error| format!("reading results: {error}"))?;
-    staging.get_mapped_range(..).map_err(|error| format!("reading results: {error}"))
+    /// Call after the submission: maps the buffer once the work is done.
+    pub fn request(&mut self) {
+        let (sender, mapping) = mpsc::channel();
+        self.buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+            // There is no receiver if the samples were discarded, or after an error that was reported.
+            let _ = sender.send(result);
+        });
+        self.mapping = Some(mapping);
+    }
+
+    /// The results, once the work is done.
+    pub fn view(&self) -> Result<wgpu::BufferView, String> {
+        let mapping = self.mapping.as_ref().ok_or("nothing was submitted")?;
+        let mapped = mapping.try_recv().map_err(|_| "the device did not return its results".to_owned())?;
+        mapped.map_err(|error| format!("reading results: {error}"))?;
+        self.buffer.get_mapped_range(..).map_err(|error| format!("reading results: {error}"))
+    }
+
+    /// Makes room for the next results.
+    pub fn release(&mut self) {
+        if self.mapping.take().is_some() {
+            self.buffer.unmap();
+        }
+    }
 }
 
 /// Reads the results of a dispatch. Serves one dispatch in flight at a time.
@@ -32,8 +54,7 @@ pub struct DispatchReadback {
     /// `None` if the device has no clock.
     clock: Option<Clock>,
     /// Two timestamps, then the dispatch's counters.
-    staging: wgpu::Buffer,
-    mapping: Option<Mapping>,
+    staging: Staging,
 }
 
 /// A pair of timestamps around a dispatch.
@@ -73,9 +94,8 @@ impl DispatchReadback {
     /// # Errors
     /// If the device runs out of memory.
     pub fn new(gpu: &Gpu) -> Result<DispatchReadback, String> {
-        let read = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
-        let staging = gpu.buffer("readback", TIMES_SIZE + COUNTERS_SIZE, read)?;
-        Ok(DispatchReadback { clock: Clock::new(gpu), staging, mapping: None })
+        let staging = Staging::new(gpu, "readback", TIMES_SIZE + COUNTERS_SIZE)?;
+        Ok(DispatchReadback { clock: Clock::new(gpu), staging })
     }
 
     /// Whether the device's own clock times dispatches.
@@ -99,16 +119,17 @@ impl DispatchReadback {
 
     /// Call after the pass: copies timestamps and counters to the staging buffer.
     pub fn end(&self, encoder: &mut wgpu::CommandEncoder, counters: &wgpu::Buffer) {
+        let staging = &self.staging.buffer;
         if let Some(clock) = &self.clock {
             encoder.resolve_query_set(&clock.queries, 0..2, &clock.resolved, 0);
-            encoder.copy_buffer_to_buffer(&clock.resolved, 0, &self.staging, 0, TIMES_SIZE);
+            encoder.copy_buffer_to_buffer(&clock.resolved, 0, staging, 0, TIMES_SIZE);
         }
-        encoder.copy_buffer_to_buffer(counters, COUNTERS_OFFSET, &self.staging, TIMES_SIZE, COUNTERS_SIZE);
+        encoder.copy_buffer_to_buffer(counters, COUNTERS_OFFSET, staging, TIMES_SIZE, COUNTERS_SIZE);
     }
 
     /// Call after the submission: maps the staging buffer.
     pub fn request(&mut self) {
-        self.mapping = Some(request_mapping(&self.staging));
+        self.staging.request();
     }
 
     /// Reads the results of a completed dispatch.
@@ -116,8 +137,7 @@ impl DispatchReadback {
     /// # Errors
     /// The device's error.
     pub fn read(&mut self) -> Result<DispatchResult, String> {
-        let mapping = self.mapping.take().ok_or("nothing was submitted")?;
-        let view = view(&self.staging, &mapping)?;
+        let view = self.staging.view()?;
         let (times, counters) = view.split_at(TIMES_SIZE as usize);
         let mut ticks = times.chunks_exact(8).map(|time| time.try_into().map_or(0, u64::from_le_bytes));
         let (begin, end) = (ticks.next().unwrap_or(0), ticks.next().unwrap_or(0));
@@ -125,7 +145,7 @@ impl DispatchReadback {
         let took = self.clock.as_ref().map(|clock| Duration::from_secs_f64(seconds(clock)));
         let counters = bytemuck::pod_read_unaligned(counters);
         drop(view);
-        self.staging.unmap();
+        self.staging.release();
         Ok(DispatchResult { took, counters })
     }
 }

@@ -6,7 +6,7 @@ use super::dispatches::stuck;
 use super::film_buffers::FilmBuffers;
 use super::layout::GpuDispatch;
 use super::loaded::SceneOnDevice;
-use super::readback::{request_mapping, view};
+use super::readback::Staging;
 use super::schedule::Blocks;
 use super::shader_source::EntryPoint;
 use super::{GpuRenderer, ITERATION_LIMIT, failed};
@@ -76,7 +76,7 @@ impl GpuRenderer {
         let (gpu, size) = (&self.gpu, size_of_val(words) as u64);
         let data = bytemuck::cast_slice(words);
         let buffer = gpu.filled("scratch", data, Usages::STORAGE | Usages::COPY_SRC)?;
-        let staging = gpu.buffer("scratch, read", size, Usages::MAP_READ | Usages::COPY_DST)?;
+        let mut staging = Staging::new(gpu, "scratch, read", size)?;
         let group = gpu.bind(&gpu.layouts.scratch, &[&buffer]);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         {
@@ -87,12 +87,11 @@ impl GpuRenderer {
             }
             pass.dispatch_workgroups(1, 1, 1);
         }
-        encoder.copy_buffer_to_buffer(&buffer, 0, &staging, 0, size);
+        encoder.copy_buffer_to_buffer(&buffer, 0, &staging.buffer, 0, size);
         let submission = gpu.queue.submit([encoder.finish()]);
-        let mapping = request_mapping(&staging);
+        staging.request();
         gpu.wait_unless(&submission, None)?;
-        let view = view(&staging, &mapping)?;
-        Ok(bytemuck::pod_collect_to_vec(&view[..size as usize]))
+        Ok(bytemuck::pod_collect_to_vec(&staging.view()?[..size as usize]))
     }
 }
 

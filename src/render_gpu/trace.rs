@@ -1,8 +1,7 @@
 //! Traces a range of samples: splits it into dispatches, reads the film back, and traces missing samples again.
 
 use super::dispatches::{BoundDispatch, CAUTION_LIMIT, CAUTION_SHIFT, Incomplete};
-use super::film_buffers::Slab;
-use super::layout::{GpuBlock, GpuDispatch, tile_size};
+use super::layout::{GpuBlock, GpuDispatch, WORKGROUP_SIZE, tile_size};
 use super::loaded::Loaded;
 use super::options::InjectionPoint;
 use super::scene::SHARED_BLOCK;
@@ -27,70 +26,83 @@ impl GpuRenderer {
     ) -> Result<Stats, Incomplete> {
         loaded.film.check_new(range, film)?;
         self.dispatches.check_whole()?;
-        let settings = *loaded.job.settings();
-        let tile = tile_size(settings.width, settings.height);
-        let tile_pixels = u64::from(tile[0]) * u64::from(tile[1]);
+        let (settings, suspends) = (*loaded.job.settings(), loaded.features.suspends);
+        let block_limit =
+            loaded.scene.prepared.block_limit.min(if suspends { SHARED_BLOCK } else { u32::MAX });
         let mut stats = Stats::default();
-        let Loaded { features, .. } = *loaded;
-        let whole_samples = self.dispatches.whole_samples(&features, &loaded.scene.prepared);
-        let block_limit = loaded.scene.prepared.block_limit;
-        let block_limit = if features.suspends { block_limit.min(SHARED_BLOCK) } else { block_limit };
         for slab in 0..loaded.film.slabs.len() {
-            let Slab { first_row, row_count, .. } = loaded.film.slabs[slab];
-            let area = [settings.width, row_count];
-            let tiles = settings.width.div_ceil(tile[0]) * row_count.div_ceil(tile[1]);
+            let area = [settings.width, loaded.film.slabs[slab].row_count];
+            let tiles = Tiles::new(slab, area, tile_size(settings.width, settings.height));
             let mut left = Blocks::of_range(range.clone(), &settings, block_limit);
             loop {
-                let affordable = self.dispatches.budget(&features).paths();
-                let threads = (u64::from(tiles) * tile_pixels).min(self.gpu.adapter.busy_threads());
-                let samples = self.options.samples_per_dispatch.unwrap_or(affordable / threads);
-                let samples = samples.min(whole_samples.unwrap_or(u64::MAX));
-                let (blocks, samples) = left.take(samples >> (CAUTION_SHIFT * self.dispatches.caution));
+                let (blocks, samples) = left.take(self.affordable_samples(loaded, &tiles));
                 if blocks.is_empty() {
                     break;
                 }
-                let blocks: Arc<[GpuBlock]> = blocks.into();
-                let mut first_tile = 0;
-                while first_tile < tiles {
-                    if cancel.load(Ordering::Relaxed) {
-                        return Err(RenderError::Cancelled.into());
-                    }
-                    let slot = self.dispatches.free_slot(&self.gpu, cancel)?;
-                    let affordable = self.dispatches.budget(&features).paths();
-                    let tile_limit =
-                        (affordable / (tile_pixels * samples).max(1)).min(self.dispatches.tile_limit());
-                    let tile_count = evenly(tiles - first_tile, tile_limit);
-                    let parameters = GpuDispatch {
-                        first_tile,
-                        tile_count,
-                        block_count: blocks.len() as u32,
-                        iteration_limit: self.dispatches.iteration_limit(&features),
-                        first_row,
-                        row_count,
-                        ..GpuDispatch::default()
-                    };
-                    let dispatch = BoundDispatch {
-                        kernel: features,
-                        pipeline: loaded.kernel.pipeline.clone(),
-                        scene: loaded.scene.group.clone(),
-                        film: loaded.film.slabs[slab].group.clone(),
-                        parameters_buffer: loaded.film.parameters.clone(),
-                        blocks_buffer: loaded.film.blocks.clone(),
-                        counters: loaded.film.counters.clone(),
-                        blocks: Arc::clone(&blocks),
-                        parameters,
-                        paths: u64::from(tile_count) * tile_pixels * samples,
-                        samples: pixels_within(area, tile, first_tile..first_tile + tile_count) * samples,
-                    };
-                    self.submit(slot, dispatch).map_err(failed)?;
-                    first_tile += tile_count;
-                    if loaded.film.is_reading_back() {
-                        stats.add(&loaded.film.finish_readback(&self.gpu, film)?);
-                    }
-                }
+                stats.add(&self.trace_blocks(loaded, &tiles, &blocks.into(), samples, film, cancel)?);
             }
         }
         stats.add(&loaded.film.finish_readback(&self.gpu, film)?);
+        Ok(stats)
+    }
+
+    /// Samples per pixel for which the time of a dispatch of all `tiles` suffices.
+    fn affordable_samples(&mut self, loaded: &Loaded, tiles: &Tiles) -> u64 {
+        let threads = (u64::from(tiles.count) * TILE_PIXELS).min(self.gpu.adapter.busy_threads());
+        let affordable = self.dispatches.budget(&loaded.features).paths() / threads;
+        let samples = self.options.samples_per_dispatch.unwrap_or(affordable);
+        let whole_samples = self.dispatches.whole_samples(&loaded.features, &loaded.scene.prepared);
+        samples.min(whole_samples.unwrap_or(u64::MAX)) >> (CAUTION_SHIFT * self.dispatches.caution)
+    }
+
+    /// Submits the dispatches of `blocks`, which have `samples` samples, in all `tiles`.
+    fn trace_blocks(
+        &mut self,
+        loaded: &mut Loaded,
+        tiles: &Tiles,
+        blocks: &Arc<[GpuBlock]>,
+        samples: u64,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, Incomplete> {
+        let features = loaded.features;
+        let mut stats = Stats::default();
+        let mut first_tile = 0;
+        while first_tile < tiles.count {
+            if cancel.load(Ordering::Relaxed) {
+                return Err(RenderError::Cancelled.into());
+            }
+            let slot = self.dispatches.free_slot(&self.gpu, cancel)?;
+            let affordable = self.dispatches.budget(&features).paths() / (TILE_PIXELS * samples);
+            let tile_count = evenly(tiles.count - first_tile, affordable.min(self.dispatches.tile_limit()));
+            let slab = &loaded.film.slabs[tiles.slab];
+            let dispatch = BoundDispatch {
+                kernel: features,
+                pipeline: loaded.kernel.pipeline.clone(),
+                scene: loaded.scene.group.clone(),
+                film: slab.group.clone(),
+                parameters_buffer: loaded.film.parameters.clone(),
+                blocks_buffer: loaded.film.blocks.clone(),
+                counters: loaded.film.counters.clone(),
+                blocks: Arc::clone(blocks),
+                parameters: GpuDispatch {
+                    first_tile,
+                    tile_count,
+                    block_count: blocks.len() as u32,
+                    iteration_limit: self.dispatches.iteration_limit(&features),
+                    first_row: slab.first_row,
+                    row_count: slab.row_count,
+                    ..GpuDispatch::default()
+                },
+                paths: u64::from(tile_count) * TILE_PIXELS * samples,
+                samples: tiles.pixels_within(first_tile..first_tile + tile_count) * samples,
+            };
+            self.submit(slot, dispatch).map_err(failed)?;
+            first_tile += tile_count;
+            if loaded.film.is_reading_back() {
+                stats.add(&loaded.film.finish_readback(&self.gpu, film)?);
+            }
+        }
         Ok(stats)
     }
 
@@ -171,14 +183,33 @@ impl GpuRenderer {
     }
 }
 
-/// Number of pixels in `tiles`, which are numbered row by row in a picture of the given size.
-fn pixels_within([width, height]: [u32; 2], tile: [u32; 2], tiles: Range<u32>) -> u64 {
-    let across = width.div_ceil(tile[0]);
-    let pixels = |number: u32| {
-        let corner = [number % across * tile[0], number / across * tile[1]];
-        u64::from((width - corner[0]).min(tile[0])) * u64::from((height - corner[1]).min(tile[1]))
-    };
-    tiles.map(pixels).sum()
+/// Pixels of a tile that lies within the picture.
+const TILE_PIXELS: u64 = WORKGROUP_SIZE as u64;
+
+/// The tiles of a slab, numbered row by row.
+struct Tiles {
+    slab: usize,
+    /// Width and height of the slab and of a tile, pixels.
+    area: [u32; 2],
+    tile: [u32; 2],
+    count: u32,
+}
+
+impl Tiles {
+    fn new(slab: usize, area: [u32; 2], tile: [u32; 2]) -> Self {
+        Tiles { slab, area, tile, count: area[0].div_ceil(tile[0]) * area[1].div_ceil(tile[1]) }
+    }
+
+    /// Number of pixels of the slab in these tiles.
+    fn pixels_within(&self, tiles: Range<u32>) -> u64 {
+        let Tiles { area: [width, height], tile, .. } = *self;
+        let across = width.div_ceil(tile[0]);
+        let pixels = |number: u32| {
+            let corner = [number % across * tile[0], number / across * tile[1]];
+            u64::from((width - corner[0]).min(tile[0])) * u64::from((height - corner[1]).min(tile[1]))
+        };
+        tiles.map(pixels).sum()
+    }
 }
 
 /// Splits the remaining tiles into equal parts of at most `affordable` and at least one, so that no small dispatch remains.
@@ -196,11 +227,11 @@ mod tests {
         for (area, tile) in
             [([50_u32, 43_u32], [8, 8]), ([1, 2000], [1, 64]), ([4, 4], [4, 16]), ([64, 64], [8, 8])]
         {
-            let tiles = area[0].div_ceil(tile[0]) * area[1].div_ceil(tile[1]);
-            assert_eq!(pixels_within(area, tile, 0..tiles), u64::from(area[0]) * u64::from(area[1]));
+            let tiles = Tiles::new(0, area, tile);
+            assert_eq!(tiles.pixels_within(0..tiles.count), u64::from(area[0]) * u64::from(area[1]));
         }
         // Seven tiles across: the last is 2 pixels wide, and those of the last row are 3 high.
-        let pixels = |tiles: Range<u32>| pixels_within([50, 43], [8, 8], tiles);
+        let pixels = |tiles: Range<u32>| Tiles::new(0, [50, 43], [8, 8]).pixels_within(tiles);
         assert_eq!([0..0, 0..1, 13..14, 35..36, 41..42].map(pixels), [0, 64, 2 * 8, 8 * 3, 2 * 3]);
         assert_eq!(pixels(5..8), 64 + 2 * 8 + 64);
     }

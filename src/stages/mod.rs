@@ -53,6 +53,10 @@ pub struct Setup {
     pub max_depth: u32,
     /// Whether the book has this picture. If not, it only serves for measuring.
     pub is_in_book: bool,
+    /// Whether it is about single pixels, so that other sizes and numbers of samples would not show it.
+    pub is_about_pixels: bool,
+    /// Whether every program places its small spheres differently.
+    pub has_random_spheres: bool,
 }
 
 /// How the window shows what to look for.

@@ -297,7 +297,7 @@ pub fn stopped(progressive: Progressive) -> Status {
     progressive.stop();
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::Stopped));
-    assert_eq!(progressive.finish(), Some(expected(status.samples_per_pixel)));
+    assert_eq!(progressive.take_film(), Some(expected(status.samples_per_pixel)));
     status
 }
 

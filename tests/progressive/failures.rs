@@ -28,7 +28,7 @@ fn a_failing_backend_hands_its_film_to_the_cpu() {
         let error = expected(point.samples_per_pixel).error().unwrap();
         assert_eq!((point.backend, point.rmse_estimate), (backend, error.rmse), "{point:?}");
     }
-    assert_eq!(progressive.finish(), Some(expected(100)));
+    assert_eq!(progressive.take_film(), Some(expected(100)));
 }
 
 #[test]
@@ -45,7 +45,7 @@ fn last_whole_pass_survives_when_all_backends_fail() {
         let reason = if panics { "a slip of the tracer" } else { "pulled out" };
         assert!(matches!(&status.phase, Phase::Failed(message) if message.contains(reason)), "{status:?}");
         assert_eq!(*asked.lock().unwrap(), ["the CPU", "the CPU's scalar code", "the reference"]);
-        assert_eq!(progressive.finish(), Some(expected(16)));
+        assert_eq!(progressive.take_film(), Some(expected(16)));
     }
 }
 
@@ -65,7 +65,7 @@ fn panics_do_not_end_the_render() {
     for slip in ["no such backend", "a slip of the tracer", "a slip of the onlooker"] {
         assert!(messages.contains(slip), "{messages}");
     }
-    assert_eq!(progressive.finish(), Some(expected(2000)));
+    assert_eq!(progressive.take_film(), Some(expected(2000)));
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn missing_samples_are_noticed() {
         "{:?}",
         status.messages
     );
-    assert_eq!(progressive.finish(), Some(expected(64)));
+    assert_eq!(progressive.take_film(), Some(expected(64)));
 }
 
 #[test]
@@ -150,13 +150,13 @@ fn spoilt_film_is_restarted() {
     });
     let status = progressive.wait_until_over();
     assert_eq!((status.phase, status.samples_per_pixel), (Phase::Done(EndReason::Samples), 100));
-    assert_eq!(progressive.finish(), Some(expected(100)));
+    assert_eq!(progressive.take_film(), Some(expected(100)));
 
     let progressive = started_with(CPU, Plan::samples(100), |choice| spoiling(choice.name(), || ()));
     let status = progressive.wait_until_over();
     assert!(matches!(&status.phase, Phase::Failed(reason) if reason.contains("pulled out")), "{status:?}");
     assert_eq!(status.samples_per_pixel, 0);
-    assert_eq!(progressive.finish(), Some(job(2).new_film()));
+    assert_eq!(progressive.take_film(), Some(job(2).new_film()));
 }
 
 /// A paused render with a listener that panics the next `times` it is called.
@@ -195,7 +195,7 @@ fn a_listener_that_panics_does_not_end_the_render() {
     // The next command delivers the message.
     progressive.inspect(|_| ());
     wait_until(&progressive, |status| !status.messages.is_empty());
-    assert_eq!(progressive.finish(), Some(expected(8)));
+    assert_eq!(progressive.take_film(), Some(expected(8)));
 }
 
 #[test]
@@ -206,7 +206,7 @@ fn dead_render_thread_reports_the_lost_film() {
     wait_until(&progressive, |status| status.phase.is_over());
     let lost = "the render thread failed; its film is lost";
     assert_eq!(progressive.status().phase, Phase::Failed(lost.to_owned()));
-    assert_eq!(progressive.finish(), None);
+    assert_eq!(progressive.take_film(), None);
 }
 
 /// A panic of the real tracer in the middle of a tile.

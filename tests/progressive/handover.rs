@@ -23,7 +23,7 @@ fn another_backend_continues_the_same_film() {
     }
     let status = progressive.wait_until_over();
     assert_eq!(parts(&status).iter().map(|(_, samples)| samples).sum::<u64>(), 3000);
-    assert_eq!(progressive.finish(), Some(expected(3000)));
+    assert_eq!(progressive.take_film(), Some(expected(3000)));
 }
 
 #[test]
@@ -95,7 +95,7 @@ fn gaps_of_a_film_are_filled() {
     let progressive = continued(film([3..5, 10..30]), Plan::samples(100));
     let status = progressive.wait_until_over();
     assert_eq!((status.planned_samples_per_pixel, status.stats.paths), (100, (100 - 22) * 4));
-    assert_eq!(progressive.finish(), Some(expected(100)));
+    assert_eq!(progressive.take_film(), Some(expected(100)));
 
     // Ten of the twelve samples 8..20 are new, and thirteen others stay.
     let plan = |samples| Plan { first_sample: 8, ..Plan::samples(samples) };
@@ -107,7 +107,7 @@ fn gaps_of_a_film_are_filled() {
     progressive.set_plan(plan(30));
     wait_for(&progressive, 35);
     assert_eq!(progressive.wait_until_over().planned_samples_per_pixel, 35);
-    assert_eq!(progressive.finish().unwrap().samples().to_string(), "0..3, 8..30, 1000..1010");
+    assert_eq!(progressive.take_film().unwrap().samples().to_string(), "0..3, 8..30, 1000..1010");
 }
 
 #[test]
@@ -122,7 +122,7 @@ fn a_film_that_needs_no_more_samples_needs_no_backend() {
         let status = progressive.wait_until_over();
         assert_eq!((status.phase, status.samples_per_pixel), (Phase::Done(reason), 8));
         assert!(status.given_up.is_empty(), "{:?}", status.messages);
-        assert_eq!(progressive.finish(), Some(expected(8)));
+        assert_eq!(progressive.take_film(), Some(expected(8)));
     }
 }
 
@@ -163,7 +163,7 @@ fn another_backend_begins_with_short_passes() {
             progressive.switch_backend(other_cpu());
         }
         wait_until(&progressive, |_| passes.lock().unwrap().len() >= 4);
-        progressive.finish();
+        progressive.take_film();
         let passes = passes.lock().unwrap();
         assert_eq!(passes[0], 2, "{passes:?}");
         assert!(passes.windows(2).all(|pair| pair[1] <= 2 * pair[0]), "{passes:?}");

@@ -26,7 +26,7 @@ fn a_plan_of_samples_is_met_exactly() {
     assert_eq!(status.phase, Phase::Done(EndReason::Samples));
     assert_eq!((status.samples_per_pixel, status.stats.paths), (200, 800));
     assert_eq!(samples_of_history(&status), [2, 4, 8, 16, 32, 64, 128]);
-    assert_eq!(progressive.finish(), Some(expected(200)));
+    assert_eq!(progressive.take_film(), Some(expected(200)));
 }
 
 #[test]
@@ -38,7 +38,7 @@ fn unwatched_first_pass_has_full_length() {
             Box::new(Fake { trial, pause: Duration::ZERO, ..Fake::new(choice.name()) })
         });
         let status = progressive.wait_until_over();
-        assert_eq!(progressive.finish(), Some(expected(status.samples_per_pixel)));
+        assert_eq!(progressive.take_film(), Some(expected(status.samples_per_pixel)));
         samples_of_history(&status)
     }
     let batch = |stop| Plan { pass_target: Plan::BATCH_PASS, ..Plan::until(stop) };
@@ -81,7 +81,7 @@ fn pauses_lose_nothing() {
         progressive.resume();
     }
     progressive.wait_until_over();
-    assert_eq!(progressive.finish(), Some(expected(1000)));
+    assert_eq!(progressive.take_film(), Some(expected(1000)));
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn time_limit_includes_preparation_but_allows_one_pass() {
         let is_over_before_the_first_pass = limit != 0.1;
         assert!(status.samples_per_pixel >= 2, "{status:?}");
         assert!(!is_over_before_the_first_pass || status.samples_per_pixel == 2, "{status:?}");
-        assert_eq!(progressive.finish(), Some(expected(status.samples_per_pixel)));
+        assert_eq!(progressive.take_film(), Some(expected(status.samples_per_pixel)));
     }
 }
 
@@ -108,7 +108,7 @@ fn noise_target_ends_the_render() {
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::NoiseTarget));
     assert!(status.error.unwrap().rmse <= target);
-    assert_eq!(status.error, progressive.finish().unwrap().error());
+    assert_eq!(status.error, progressive.take_film().unwrap().error());
     // The first samples already meet this target, but their estimate is too rough to be trusted.
     assert_eq!(started(CPU, to_noise(1e9)).wait_until_over().samples_per_pixel, 16);
 }
@@ -121,7 +121,7 @@ fn ended(value: fn(u64) -> u64, is_late: bool) -> (Status, Film) {
         let value = Box::new(move |_, index| PixelSum([value(index); 3]));
         Box::new(Fake { value, holds: usize::from(is_late), pause: Duration::ZERO, ..Fake::new("cpu") })
     });
-    (progressive.wait_until_over(), progressive.finish().unwrap())
+    (progressive.wait_until_over(), progressive.take_film().unwrap())
 }
 
 #[test]
@@ -150,7 +150,7 @@ fn the_error_at_the_end_is_that_of_the_whole_film() {
     let mut progressive = idle(|choice| Box::new(Fake { pause: Duration::ZERO, ..Fake::new(choice.name()) }));
     progressive.start(RenderRequest::new(job(16_384), CPU, Plan::samples(6)));
     let status = progressive.wait_until_over();
-    assert_eq!(status.error, progressive.finish().unwrap().error());
+    assert_eq!(status.error, progressive.take_film().unwrap().error());
 }
 
 #[test]
@@ -164,7 +164,7 @@ fn stop_keeps_the_film_and_can_be_undone() {
     progressive.set_plan(Plan::samples(2100));
     wait_for(&progressive, 2100);
     assert_eq!(progressive.status().planned_samples_per_pixel, 2100);
-    assert_eq!(progressive.finish(), Some(expected(2100)));
+    assert_eq!(progressive.take_film(), Some(expected(2100)));
 }
 
 #[test]
@@ -212,7 +212,7 @@ fn a_new_job_takes_over_in_the_middle_of_a_pass() {
     progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(4)));
     let status = progressive.wait_until_over();
     assert_eq!((status.run, status.samples_per_pixel), (2, 4));
-    assert_eq!(progressive.finish(), Some(expected(4)));
+    assert_eq!(progressive.take_film(), Some(expected(4)));
 }
 
 /// Reports that it begins, waits until it is cancelled, and reports whether it was.
@@ -240,7 +240,7 @@ fn abandoning_and_dropping_cancel_the_pass() {
         } else {
             progressive.abandon();
             assert_eq!(progressive.wait_until_over().phase, Phase::Idle);
-            assert_eq!(progressive.finish(), None);
+            assert_eq!(progressive.take_film(), None);
         }
         assert!(has_ended.recv_timeout(PATIENCE).unwrap(), "dropped: {is_dropped}");
     }
@@ -275,7 +275,7 @@ fn a_stop_does_not_wait_for_preparation() {
     assert_eq!((status.phase, status.samples_per_pixel), (Phase::Done(EndReason::Stopped), 0));
     progressive.resume();
     wait_until(&progressive, |status| status.phase == Phase::Done(EndReason::Samples));
-    assert_eq!(progressive.finish(), Some(expected(8)));
+    assert_eq!(progressive.take_film(), Some(expected(8)));
 }
 
 #[test]
@@ -297,11 +297,11 @@ fn abandoned_preparation_is_not_awaited() {
         if is_followed {
             progressive.start(RenderRequest::new(job(2), other_cpu(), Plan::samples(4)));
             assert_eq!(progressive.wait_until_over().phase, Phase::Done(EndReason::Samples));
-            assert_eq!(progressive.finish(), Some(expected(4)));
+            assert_eq!(progressive.take_film(), Some(expected(4)));
         } else {
             progressive.abandon();
             wait_until(&progressive, |status| status.phase == Phase::Idle);
-            assert_eq!(progressive.finish(), None);
+            assert_eq!(progressive.take_film(), None);
         }
         assert_eq!(has_ended.recv_timeout(PATIENCE), Ok(true), "pending: {is_pending}");
     }
@@ -354,7 +354,7 @@ fn paused_render_obeys_other_commands() {
     assert_eq!(status.planned_samples_per_pixel, held + 8);
     progressive.resume();
     assert_eq!(progressive.wait_until_over().phase, Phase::Done(EndReason::Samples));
-    assert_eq!(progressive.finish(), Some(expected(held + 8)));
+    assert_eq!(progressive.take_film(), Some(expected(held + 8)));
 
     let (progressive, held) = paused();
     assert_eq!(progressive.take_film(), Some(expected(held)));
@@ -365,5 +365,5 @@ fn paused_render_obeys_other_commands() {
     progressive.abandon();
     assert_eq!(settled(&progressive).phase, Phase::Idle);
     changes_nothing(&progressive, &[PAUSE, RESUME, STOP]);
-    assert_eq!(progressive.finish(), None);
+    assert_eq!(progressive.take_film(), None);
 }

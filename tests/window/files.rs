@@ -40,7 +40,7 @@ fn rendered_again(path: &Path) -> Vec<u8> {
     let backend = weekender::backends::BackendChoice::Cpu(weekender::render_cpu::CpuOptions::default());
     progressive.start(RenderRequest::new(job, backend, Plan::samples(samples)));
     progressive.wait_until_over();
-    progressive.finish().unwrap().to_rgb8(recipe.rules.transfer)
+    progressive.take_film().unwrap().to_rgb8(recipe.rules.transfer)
 }
 
 #[test]

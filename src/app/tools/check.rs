@@ -10,7 +10,7 @@ use crate::app::toolkit::widgets::{
 };
 use crate::app::toolkit::{Answers, Texture, caught, overlay, theme};
 use crate::comparison::check::{
-    Answer, AnswerKind, Damage, Finding, Mine, POLL_INTERVAL, Watched, judge_again, pictures,
+    Answer, AnswerKind, Damage, Finding, Mine, POLL_INTERVAL, Watched, judge, pictures,
 };
 use crate::numbers::heat::HeatScale;
 use crate::stages::Stage;
@@ -86,7 +86,7 @@ impl Check {
         let watch = move || {
             let outcome = caught(|| {
                 while answer.is_wanted() {
-                    let found = watched.judged(|mine, last| judge_again(mine, stage, last, &say));
+                    let found = watched.judged(|mine| judge(mine, stage, &say));
                     if let Some(found) = found {
                         answer.give(Ok(Checked::of(found)));
                     }

@@ -3,7 +3,7 @@
 use super::hypothesis::{Compared, Fit, Hypothesis, compare};
 use super::tracer::{Steps, Tracer};
 use super::written::Seen;
-use super::{Damage, Finding, Mine};
+use super::{Damage, Finding, Mine, Mistake};
 use crate::comparison::answer::Verdict;
 use crate::scene::{Scene, Sphere};
 use crate::stages::{Shading, Stage, book_url, heading};
@@ -84,6 +84,11 @@ impl Answer {
         }
     }
 
+    fn explain(&mut self, mistake: &Mistake) {
+        self.remedy = Some(capitalised(mistake.remedy));
+        self.section = Section::find(mistake.section);
+    }
+
     /// A right picture in a damaged file counts as different, because other programs cannot read it.
     pub fn verdict(&self) -> Verdict {
         match self.kind {
@@ -122,8 +127,7 @@ impl Finding {
         if let Some(mistake) = self.named().filter(|_| self.is_other_right()) {
             answer.title = "It is right for the book, though not the same as ours".to_owned();
             answer.explanation = capitalised(mistake.title);
-            answer.remedy = Some(capitalised(mistake.remedy));
-            answer.section = Section::find(mistake.section);
+            answer.explain(mistake);
         } else if let Some(mistake) = self.named().filter(|_| self.is_sure) {
             answer.kind = AnswerKind::Mistake;
             answer.title = capitalised(mistake.title);
@@ -135,8 +139,7 @@ impl Finding {
                     "Each of them produces this picture".to_owned()
                 }
             };
-            answer.remedy = Some(capitalised(mistake.remedy));
-            answer.section = Section::find(mistake.section);
+            answer.explain(mistake);
         } else if self.is_too_little() {
             self.too_little(&mut answer);
         } else if let Some(mistake) = self.named() {
@@ -144,8 +147,7 @@ impl Finding {
             answer.title = format!("A guess: {}", mistake.title);
             answer.explanation =
                 "It is the closest of the known mistakes, but does not explain everything".to_owned();
-            answer.remedy = Some(capitalised(mistake.remedy));
-            answer.section = Section::find(mistake.section);
+            answer.explain(mistake);
         } else if !self.is_sure {
             answer.kind = AnswerKind::Unknown;
             answer.title = "Something differs, and none of the known mistakes explains it".to_owned();
@@ -205,8 +207,7 @@ impl Finding {
         if let Some(note) = self.mistake.as_ref().and_then(|found| found.hypothesis.note.as_deref()) {
             evidence.push(capitalised(note));
         }
-        if self.right.differing > 0.0 {
-            let [column, row] = self.right.worst();
+        if let ([[column, row], ..], true) = (self.right.places.as_slice(), self.right.differing > 0.0) {
             evidence.push(format!(
                 "They differ in {} of the blocks of 8 x 8 pixels, most around column {column}, row {row}",
                 percent(self.right.differing)
@@ -261,7 +262,7 @@ fn apart(places: &[[u32; 2]]) -> Vec<[u32; 2]> {
     chosen
 }
 
-/// Measurements of a picture that no mistake explains: brightness, where it differs, and shifts.
+/// Measurements of a picture that no mistake explains: brightness, and where it differs.
 fn measured(right: &Compared, mine: &Mine) -> Vec<String> {
     let seen = Seen::of(mine, &right.hypothesis.written, |_, _| 0.0);
     let mut measured = Vec::new();
@@ -270,33 +271,10 @@ fn measured(right: &Compared, mine: &Mine) -> Vec<String> {
     if brighter.misfit < 0.8 * right.misfit {
         measured.extend(brighter.hypothesis.note);
     }
-    let [width, height] = [mine.width as usize, mine.height as usize];
-    let error = |[dx, dy]: [isize; 2]| {
-        let inside = |place: &usize| {
-            (2..width - 2).contains(&(place % width)) && (2..height - 2).contains(&(place / width))
-        };
-        let square = |place: usize| {
-            let from = place.wrapping_add_signed(dy * width as isize + dx);
-            let (seen, ours) = (seen.values[from], right.expected[place]);
-            (0..3)
-                .map(|channel| (seen[channel] - ours[channel]).powi(2))
-                .filter(|x| x.is_finite())
-                .sum::<f64>()
-        };
-        (0..width * height).filter(inside).map(square).sum::<f64>()
-    };
-    let shifts = (-2..=2).flat_map(|dy| (-2..=2).map(move |dx| [dx, dy]));
-    let errors: Vec<([isize; 2], f64)> = shifts.map(|shift| (shift, error(shift))).collect();
-    let here = error([0, 0]);
-    if let Some(([dx, dy], least)) = errors.into_iter().min_by(|(_, a), (_, b)| a.total_cmp(b))
-        && least < 0.7 * here
-    {
-        measured.push(format!("it fits better if moved by {} pixels to the left and {} up", dx, dy));
-    }
     let tracer = Tracer::new(&right.hypothesis.recipe, Steps::OF_THE_BOOK, 1);
     let spheres = tracer.spheres();
     if right.differing > 0.0 {
-        let sphere = |[x, y]: &[u32; 2]| spheres[*y as usize * width + *x as usize];
+        let sphere = |[x, y]: &[u32; 2]| spheres[(y * mine.width + x) as usize];
         let names = right.places.iter().map(|place| name_of(&right.hypothesis.recipe.scene, sphere(place)));
         measured.push(format!("blocks that differ show: {}", shares(names)));
     }

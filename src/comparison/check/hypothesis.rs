@@ -2,12 +2,10 @@
 
 use super::tracer::{Steps, Tracer};
 use super::written::{Seen, Written, reduced};
-use crate::job::output::Encoding;
 use crate::job::recipe::Recipe;
 use crate::job::render::{RenderSettings, Renderer, SamplerKind};
 use crate::numbers::statistics::blocks::{Block, BlockTest, Differences, Noise};
 use crate::render_cpu::{CpuOptions, CpuRenderer};
-use crate::stages::Transfer;
 use anyhow::Result;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
@@ -29,8 +27,8 @@ pub struct Mistake {
     pub remedy: &'static str,
     /// Whether it can show in a picture of this recipe.
     pub applies: fn(&Recipe) -> bool,
-    /// The sections in which the book itself has it, so that the picture is right; `"*"` for all.
-    pub right_in: &'static [&'static str],
+    /// Whether it is another way to be right.
+    pub is_right: bool,
     /// Each makes one variant of the mistake out of the right picture.
     pub changes: &'static [fn(&mut Hypothesis)],
 }
@@ -42,22 +40,12 @@ impl Mistake {
         let picture = |change: &fn(&mut Hypothesis)| {
             let mut picture = Hypothesis { mistake: Some(self), ..right.clone() };
             change(&mut picture);
-            picture.written.curve = match picture.written.curve {
-                Encoding::Gamma(1.0) => Encoding::Book(Transfer::Linear),
-                Encoding::Gamma(2.0) => Encoding::Book(Transfer::Gamma2),
-                curve => curve,
-            };
             let is_changed = picture.written != right.written
                 || picture.fit.is_some()
                 || !picture.is_right_before_writing(recipe);
             is_changed.then_some(picture)
         };
         self.changes.iter().filter_map(picture).collect()
-    }
-
-    /// Whether a picture of this section with it is right.
-    pub fn is_right_in(&self, section: &str) -> bool {
-        self.right_in.iter().any(|right| matches!(*right, "*") || *right == section)
     }
 }
 
@@ -196,26 +184,19 @@ impl Studio {
         let is_exact = !recipe.rules.antialiasing && recipe.samples_per_pixel == 1;
         let limit = samples * PIXELS / (u64::from(width) * u64::from(height));
         let mut samples = if is_exact { 1 } else { limit.clamp(2, samples.max(2)) };
-        let half = match hypothesis.steps {
-            Some(steps) => {
-                let tracer = Tracer::new(&recipe, steps, factor);
-                samples = 2 * (samples / 16).clamp(1, 8);
-                let half = |half: u32| tracer.means((samples / 2) as u32, half, mask);
-                [half(0), if is_exact { Vec::new() } else { half(1) }]
-            }
+        if hypothesis.steps.is_some() {
+            samples = 2 * (samples / 16).clamp(1, 8);
+        }
+        let mut half = |half: u32| match hypothesis.steps {
+            Some(steps) => Ok(Tracer::new(&recipe, steps, factor).means((samples / 2) as u32, half, mask)),
             None => {
-                let mut half = |seed: u32| {
-                    recipe.settings.seed = hypothesis.recipe.settings.seed.wrapping_add(seed);
-                    means(&mut self.fast, &recipe, samples.div_ceil(2))
-                };
-                [half(0)?, if is_exact { Vec::new() } else { half(1)? }]
+                recipe.settings.seed = hypothesis.recipe.settings.seed.wrapping_add(half);
+                means(&mut self.fast, &recipe, samples.div_ceil(2))
             }
         };
-        let halves = match half {
-            [half, _] if is_exact => [half.clone(), half],
-            halves => halves,
-        };
-        Ok(Rendered { halves, samples })
+        let first = half(0)?;
+        let second = if is_exact { first.clone() } else { half(1)? };
+        Ok(Rendered { halves: [first, second], samples })
     }
 }
 
@@ -241,13 +222,6 @@ pub struct Compared {
     /// The picture of the hypothesis, with what was fitted, and what it predicts in the values that `Seen` has.
     pub rendered: Rendered,
     pub expected: Vec<[f64; 3]>,
-}
-
-impl Compared {
-    /// Column and row of the middle of the block that differs most.
-    pub fn worst(&self) -> [u32; 2] {
-        self.places.first().copied().unwrap_or_default()
-    }
 }
 
 /// The hypothesis with what was fitted, and the mean squared error of its picture, in display values.

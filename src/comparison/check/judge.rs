@@ -2,9 +2,10 @@
 
 use super::Mine;
 use super::hypothesis::{Compared, Hypothesis, Mistake, Rendered, Rest, Slope, Studio, compare, rough};
+use super::mask::{enlarged, grown};
 use super::mistakes::applying_to;
 use super::noise::{Grain, grain, is_shared};
-use super::random::{common, complete, fixed, is_random};
+use super::random::{common, complete, fixed};
 use super::written::{Seen, Written};
 use crate::job::recipe::Recipe;
 use crate::stages::{Stage, SurfaceRule};
@@ -101,7 +102,17 @@ impl Finding {
 
     /// Whether the picture is right for its section, though it differs from ours.
     pub fn is_other_right(&self) -> bool {
-        self.is_sure && self.named().is_some_and(|mistake| mistake.is_right_in(self.stage.section))
+        self.is_sure && self.named().is_some_and(|mistake| mistake.is_right)
+    }
+
+    /// Adds mistakes that explain the picture as well.
+    fn add_alike(&mut self, others: impl IntoIterator<Item = &'static Mistake>) {
+        for other in others {
+            let known = self.named().into_iter().chain(self.alike.iter().copied());
+            if known.into_iter().all(|known| known.id != other.id) {
+                self.alike.push(other);
+            }
+        }
     }
 
     /// Whether the reader's noise is too strong for a verdict, or something has changed the picture.
@@ -146,7 +157,7 @@ pub fn judge(mine: &Mine, stage: Option<&'static Stage>, mut say: impl FnMut(Str
     if let Some(found) = found.as_ref().filter(|found| is_settled(found)) {
         return Ok(found.clone());
     }
-    for stage in Stage::ALL.iter().filter(|stage| is_random(stage)) {
+    for stage in Stage::ALL.iter().filter(|stage| stage.setup.has_random_spheres) {
         let last = judge_of(mine, stage, &mut say)?;
         if last.is_sure {
             return Ok(last);
@@ -154,14 +165,13 @@ pub fn judge(mine: &Mine, stage: Option<&'static Stage>, mut say: impl FnMut(Str
     }
     let mut more = candidates(mine, true, &mut say)?;
     more.retain(|stage| !near.contains(stage));
-    let mut found: Vec<Finding> = found.into_iter().chain(judge_among(mine, &more, &mut say)?).collect();
-    found.sort_by(|a, b| a.closeness(b));
-    found.into_iter().next().context("there is no stage to compare with")
+    let found = found.into_iter().chain(judge_among(mine, &more, &mut say)?);
+    found.min_by(Finding::closeness).context("there is no stage to compare with")
 }
 
 /// Judges a picture of this stage.
 fn judge_of(mine: &Mine, stage: &'static Stage, say: &mut impl FnMut(String)) -> Result<Finding> {
-    if is_random(stage) {
+    if stage.setup.has_random_spheres {
         say(format!("looking for what all pictures of {} have in common", stage.id));
     }
     let fixed = fixed(mine, stage)?;
@@ -207,39 +217,10 @@ fn judge_among(
             // The reader may have meant another stage, whose right picture this is.
             best.is_sure &= other.right.misfit >= limit;
             let is_as_close = other.mistake.as_ref().is_some_and(|found| found.misfit < limit);
-            let named = other.named().filter(|_| other.is_sure && is_as_close);
-            let is_new = |other: &&Mistake| {
-                best.named().is_none_or(|named| named.id != other.id)
-                    && !best.alike.iter().any(|known| known.id == other.id)
-            };
-            if let Some(named) = named.filter(is_new) {
-                best.alike.push(named);
-            }
+            best.add_alike(other.named().filter(|_| other.is_sure && is_as_close));
         }
     }
     Ok(Some(best))
-}
-
-/// As [`judge`], but tries the last finding first.
-pub fn judge_again(
-    mine: &Mine,
-    stage: Option<&'static Stage>,
-    last: Option<&Finding>,
-    say: impl FnMut(String),
-) -> Result<Finding> {
-    if let Some(last) = last.filter(|last| last.is_sure && last.named().is_some()) {
-        let fixed = fixed(mine, last.stage)?;
-        let trial = Trial::new(&fixed, last.stage)?;
-        let again = trial.finding_of(|known| {
-            known.is_some_and(|known| last.named().is_some_and(|named| named.id == known.id))
-        })?;
-        if again.is_sure && again.named().is_some() {
-            let mut again = Finding { alike: last.alike.clone(), ignored: fixed.ignored.clone(), ..again };
-            complete(&mut again.right, again.ignored.as_deref(), last.stage)?;
-            return Ok(again);
-        }
-    }
-    judge(mine, stage, say)
 }
 
 /// A picture compared with the right one of a stage.
@@ -274,14 +255,16 @@ impl<'a> Trial<'a> {
         Seen::of(self.mine, written, |pixel, channel| self.right.expected[pixel][channel])
     }
 
-    fn finding(self) -> Result<Finding> {
-        self.finding_of(|_| true)
-    }
-
-    /// The best of the right picture and the mistakes that `is_wanted` accepts.
-    fn finding_of(mut self, is_wanted: impl Fn(Option<&Mistake>) -> bool) -> Result<Finding> {
+    /// The best of the right picture and the mistakes.
+    fn finding(mut self) -> Result<Finding> {
         let mut candidates = vec![Candidate { found: self.right.clone(), seen: self.seen.clone() }];
-        for (hypothesis, mask) in self.screened(is_wanted)? {
+        for (hypothesis, mut mask) in self.screened()? {
+            if let Some(ignored) = &self.mine.ignored {
+                let mask = mask.get_or_insert_with(|| vec![true; ignored.len()]);
+                mask.iter_mut()
+                    .zip(ignored.iter())
+                    .for_each(|(is_traced, is_ignored)| *is_traced &= !is_ignored);
+            }
             // The plain tracer is slow: it takes fewer samples of more pixels.
             let samples = if hypothesis.steps.is_some() && mask.is_none() { FINE[1] / 2 } else { FINE[1] };
             let rendered = match hypothesis.is_right_before_writing(self.studio.recipe()) {
@@ -298,51 +281,41 @@ impl<'a> Trial<'a> {
             }
         }
         candidates.sort_by(|a, b| a.found.misfit.total_cmp(&b.found.misfit));
-        let fitting: Vec<bool> =
-            (0..candidates.len()).map(|index| fits(&candidates, index, self.studio.recipe())).collect();
-        let of = |index: &usize| candidates[*index].found.hypothesis.mistake;
-        let fitting: Vec<usize> = (0..candidates.len()).filter(|index| fitting[*index]).collect();
-        let section = self.stage.section;
-        let limit = fitting.first().map_or(f64::INFINITY, |best| alike_below(candidates[*best].found.misfit));
-        let is_right = |index: &&usize| {
-            of(index).is_none_or(|mistake| mistake.is_right_in(section))
-                && candidates[**index].found.misfit < limit
+        let mistake_of = |candidate: &Candidate| candidate.found.hypothesis.mistake;
+        let fitting: Vec<&Candidate> = (0..candidates.len())
+            .filter(|index| fits(&candidates, *index, self.studio.recipe()))
+            .map(|index| &candidates[index])
+            .collect();
+        let limit = fitting.first().map_or(f64::INFINITY, |best| alike_below(best.found.misfit));
+        let right = fitting.iter().find(|candidate| mistake_of(candidate).is_none());
+        let other_right = || {
+            let is_right = |candidate: &&&Candidate| mistake_of(candidate).is_some_and(|it| it.is_right);
+            fitting.iter().filter(|candidate| candidate.found.misfit < limit).find(is_right)
         };
-        let right = fitting.iter().find(|index| of(index).is_none());
-        let chosen = right.or_else(|| fitting.iter().find(is_right)).or(fitting.first()).copied();
-        let nearest = &candidates[chosen.unwrap_or(0)];
-        let grain = grain(self.mine, &nearest.seen, &nearest.found);
+        let chosen = right.or_else(other_right).or(fitting.first()).copied();
+        let nearest = chosen.unwrap_or(&candidates[0]);
         let is_near = nearest.found.misfit < NEARLY;
-        let grain = grain.map(|grain| Grain { altered: grain.altered.filter(|_| is_near), ..grain });
-        // If the stage does not fit, the noise tells nothing.
-        let grain = grain.filter(|grain| is_near || grain.samples >= SAMPLES_LEAST);
-        // The sky, which has no noise, is most of what is compared.
-        let grain = grain.filter(|_| self.mine.ignored.is_none());
-        let is_altered = grain.is_some_and(|grain| grain.altered.is_some());
         let mut finding = Finding {
             stage: self.stage,
             right: self.right.clone(),
             mistake: None,
             is_sure: true,
             alike: Vec::new(),
-            grain,
+            // If the stage does not fit, the noise tells nothing. Where a part of the picture is ignored, most of the rest is
+            // sky, which has no noise.
+            grain: grain(self.mine, &nearest.seen, &nearest.found)
+                .map(|grain| Grain { altered: grain.altered.filter(|_| is_near), ..grain })
+                .filter(|grain| is_near || grain.samples >= SAMPLES_LEAST)
+                .filter(|_| self.mine.ignored.is_none()),
             ignored: None,
         };
-        let named = chosen.and_then(|chosen| of(&chosen));
+        let is_altered = finding.grain.is_some_and(|grain| grain.altered.is_some());
         if let Some(chosen) = chosen.filter(|_| !is_altered) {
-            finding.mistake = named.map(|_| candidates[chosen].found.clone());
-            if named.is_some_and(|named| !named.is_right_in(section)) {
-                let limit = alike_below(candidates[chosen].found.misfit);
-                let others = fitting
-                    .iter()
-                    .filter(|other| candidates[**other].found.misfit < limit)
-                    .filter_map(of)
-                    .filter(|other| named.is_some_and(|named| named.id != other.id));
-                others.for_each(|other| {
-                    if !finding.alike.iter().any(|known| known.id == other.id) {
-                        finding.alike.push(other);
-                    }
-                });
+            finding.mistake = mistake_of(chosen).map(|_| chosen.found.clone());
+            if finding.mistake.is_some() && !finding.is_other_right() {
+                let limit = alike_below(chosen.found.misfit);
+                let alike = fitting.iter().filter(|other| other.found.misfit < limit);
+                finding.add_alike(alike.filter_map(|other| mistake_of(other)));
             }
             return Ok(finding);
         }
@@ -377,19 +350,15 @@ impl<'a> Trial<'a> {
     }
 
     /// The mistakes that may explain the picture, judged by small renders, each with a mask of the pixels that it changes.
-    fn screened(
-        &mut self,
-        is_wanted: impl Fn(Option<&Mistake>) -> bool,
-    ) -> Result<Vec<(Hypothesis, Option<Vec<bool>>)>> {
+    fn screened(&mut self) -> Result<Vec<(Hypothesis, Option<Vec<bool>>)>> {
         let recipe = self.studio.recipe().clone();
         let factor = factor(self.right.hypothesis.size(), recipe.rules.antialiasing);
         let [width, height] = self.right.hypothesis.size().map(|side| side as usize);
         let small_right = self.right.rendered.reduced(width, factor as usize);
-        let small_mask = self.mine.compared(factor);
         let plain_right = {
             let mut plain = self.right.hypothesis.clone();
             plain.plain();
-            self.studio.halves(&plain, factor, SMALL, small_mask.as_deref())?
+            self.studio.halves(&plain, factor, SMALL, None)?
         };
         let small_seen = self.seen.reduced(factor);
         let (right, _, right_misfit) = rough(&small_seen, self.right.hypothesis.clone(), small_right.clone());
@@ -399,26 +368,25 @@ impl<'a> Trial<'a> {
         let edges = edges(&self.right.expected, [width, height]);
         // Where everything is blurred, or cheap to trace, more than the edges are compared.
         let is_masked = recipe.rules.has_bounces() && recipe.camera.defocus_angle_degrees == 0.0;
-        for hypothesis in all_mistakes(&recipe).into_iter().filter(|it| is_wanted(it.mistake)) {
+        for hypothesis in all_mistakes(&recipe) {
             let is_only_scaled = hypothesis.is_right_before_writing(&recipe)
                 && Written { levels: 256.0, rounds: false, ..hypothesis.written } == right.written;
             if is_only_scaled {
                 fine.push((hypothesis, None));
                 continue;
             }
-            // The mask of compared pixels has this shape.
+            // The ignored pixels are those of a file in the right order.
             if self.mine.ignored.is_some() && hypothesis.written.order.exchanges_sides() {
                 continue;
             }
             if hypothesis.is_fine {
-                let mask = is_masked.then(|| edges.clone()).or_else(|| self.mine.compared(1));
-                fine.push((hypothesis, mask));
+                fine.push((hypothesis, is_masked.then(|| edges.clone())));
                 continue;
             }
             let is_right = hypothesis.is_right_before_writing(&recipe);
             let rendered = match is_right {
                 true => small_right.clone(),
-                false => self.studio.halves(&hypothesis, factor, SMALL, small_mask.as_deref())?,
+                false => self.studio.halves(&hypothesis, factor, SMALL, None)?,
             };
             let is_alike = hypothesis.written == right.written;
             if is_right && !is_alike && self.is_as_right(&hypothesis.written) {
@@ -429,7 +397,7 @@ impl<'a> Trial<'a> {
             let base = if hypothesis.steps.is_some() { &plain_right } else { &small_right };
             let mask =
                 (!is_right && recipe.rules.antialiasing && !hypothesis.written.order.exchanges_sides())
-                    .then(|| changed(&rendered, base, [width, height], factor, &edges));
+                    .then(|| changed(&rendered, base, [width, height], factor as usize, &edges));
             let (hypothesis, rendered, misfit) = rough(&seen, hypothesis, rendered);
             let is_plain = hypothesis.steps.is_some();
             let is_leading = is_alike && {
@@ -480,22 +448,13 @@ fn fits(candidates: &[Candidate], index: usize, recipe: &Recipe) -> bool {
     };
     if own.recipe.rules.antialiasing {
         let width = seen.size[0] as usize;
-        let moved = |by: [isize; 2]| {
-            let add = |half: &[[f64; 3]]| {
-                neighbours(half, width, |at, of| at + 0.5 * (of(by) - of(by.map(|x| -x))))
-            };
-            found.rendered.map(add)
-        };
-        let blurred = |sign: f64| {
-            let sides = [[1, 0], [-1, 0], [0, 1], [0, -1]];
-            let add = |half: &[[f64; 3]]| {
-                neighbours(half, width, |at, of| {
-                    at + sign * sides.map(|side| of(side) - at).iter().sum::<f64>()
-                })
-            };
-            found.rendered.map(add)
-        };
         let sides = [[1, 0], [-1, 0], [0, 1], [0, -1]];
+        let changed = |change: &dyn Fn(f64, Neighbour) -> f64| {
+            found.rendered.map(|half| neighbours(half, width, change))
+        };
+        let moved = |by: [isize; 2]| changed(&|at, of| at + 0.5 * (of(by) - of(by.map(|x| -x))));
+        let blurred =
+            |sign: f64| changed(&|at, of| at + sign * sides.map(|side| of(side) - at).iter().sum::<f64>());
         if sides.into_iter().any(|side| leads_somewhere(&moved(side), SHIFTED))
             || [1.0, -1.0].into_iter().any(|sign| leads_somewhere(&blurred(sign), BLURRED))
         {
@@ -513,8 +472,7 @@ fn fits(candidates: &[Candidate], index: usize, recipe: &Recipe) -> bool {
             && theirs.written == Written::right(recipe);
         let is_comparable = own.written.order == theirs.written.order
             && own.written.channels == theirs.written.channels
-            && own.written.curve == theirs.written.curve
-            && !theirs.written.truncates;
+            && own.written.curve == theirs.written.curve;
         let to = match is_comparable {
             true => as_read(&other.found.rendered, &theirs.written, &own.written, seen.size),
             false if is_besides && own.written != theirs.written => other.found.rendered.clone(),
@@ -543,12 +501,11 @@ fn as_read(rendered: &Rendered, from: &Written, to: &Written, [width, height]: [
     })
 }
 
+/// The value beside a pixel, at this offset.
+type Neighbour<'a> = &'a dyn Fn([isize; 2]) -> f64;
+
 /// Maps each value and its neighbours; the border is unchanged.
-fn neighbours(
-    pixels: &[[f64; 3]],
-    width: usize,
-    change: impl Fn(f64, &dyn Fn([isize; 2]) -> f64) -> f64,
-) -> Vec<[f64; 3]> {
+fn neighbours(pixels: &[[f64; 3]], width: usize, change: impl Fn(f64, Neighbour) -> f64) -> Vec<[f64; 3]> {
     let height = pixels.len() / width;
     let at = |index: usize| {
         let (x, y) = (index % width, index / width);
@@ -595,35 +552,17 @@ fn edges(expected: &[[f64; 3]], [width, height]: [usize; 2]) -> Vec<bool> {
     };
     let edges: Vec<bool> = (0..expected.len()).map(is_edge).collect();
     // A pixel beside an edge changes, too.
-    let near = |index: usize| {
-        let offsets = [0, 1, width, width + 1];
-        offsets.iter().any(|by| edges.get(index + by) == Some(&true) || index >= *by && edges[index - by])
-    };
-    (0..edges.len()).map(near).collect()
+    grown(&edges, [width, height])
 }
 
 /// Where the small picture of a mistake differs from the right one, and at edges, in full size.
-fn changed(
-    small: &Rendered,
-    right: &Rendered,
-    [width, height]: [usize; 2],
-    factor: u32,
-    edges: &[bool],
-) -> Vec<bool> {
-    let (factor, columns) = (factor as usize, width / factor as usize);
+fn changed(small: &Rendered, right: &Rendered, size: [usize; 2], factor: usize, edges: &[bool]) -> Vec<bool> {
     let (small, right) = (small.mean(), right.mean());
-    let rows = height / factor;
-    let is_changed = |x: usize, y: usize| {
-        let place = y.min(rows - 1) * columns + x.min(columns - 1);
-        (0..3).any(|channel| (small[place][channel] - right[place][channel]).abs() > CHANGED)
-    };
-    let at = |pixel: usize| {
-        let (x, y) = (pixel % width / factor, pixel / width / factor);
-        let around =
-            (y.saturating_sub(1)..=y + 1).any(|y| (x.saturating_sub(1)..=x + 1).any(|x| is_changed(x, y)));
-        edges[pixel] || around
-    };
-    (0..width * height).map(at).collect()
+    let pixels = small.iter().zip(&right);
+    let is_changed = |(a, b): (&[f64; 3], &[f64; 3])| a.iter().zip(b).any(|(a, b)| (a - b).abs() > CHANGED);
+    let changed: Vec<bool> = pixels.map(is_changed).collect();
+    let near = enlarged(&grown(&changed, size.map(|side| side / factor)), size, factor);
+    near.iter().zip(edges).map(|(is_near, is_edge)| *is_near || *is_edge).collect()
 }
 
 fn all_mistakes(recipe: &Recipe) -> Vec<Hypothesis> {
@@ -640,7 +579,7 @@ fn candidates(mine: &Mine, is_thorough: bool, mut say: impl FnMut(String)) -> Re
     let what = if is_thorough { "the mistakes of all stages" } else { "all stages" };
     say(format!("comparing with {what}"));
     let mut known: Vec<(Written, Seen)> = Vec::new();
-    for stage in Stage::ALL.iter().filter(|stage| !is_random(stage)) {
+    for stage in Stage::ALL.iter().filter(|stage| !stage.setup.has_random_spheres) {
         let mut studio = Studio::new(stage.recipe(), [mine.width, mine.height])?;
         let right = Hypothesis::right(studio.recipe());
         let recipe = &right.recipe.clone();
@@ -662,7 +601,7 @@ fn candidates(mine: &Mine, is_thorough: bool, mut say: impl FnMut(String)) -> Re
             mean.get(place).map_or(1.0, |pixel| pixel[channel])
         };
         let is_tried = |picture: &Hypothesis| {
-            let is_other_right = picture.mistake.is_some_and(|mistake| mistake.is_right_in(stage.section));
+            let is_other_right = picture.mistake.is_some_and(|mistake| mistake.is_right);
             !picture.is_fine && (is_thorough || is_other_right || picture.is_right_before_writing(recipe))
         };
         let mistakes = all_mistakes(recipe).into_iter().filter(is_tried);
@@ -673,18 +612,13 @@ fn candidates(mine: &Mine, is_thorough: bool, mut say: impl FnMut(String)) -> Re
                 true => linear.clone(),
                 false => rendered(&hypothesis)?,
             };
-            let fresh;
-            let seen = match known.iter().find(|(known, _)| *known == written && !written.wraps) {
-                Some((_, seen)) => seen,
-                None if written.wraps => {
-                    fresh = Seen::of(mine, &written, expected).reduced(factor);
-                    &fresh
-                }
-                None => {
-                    known.push((written, Seen::of(mine, &written, expected).reduced(factor)));
-                    &known[known.len() - 1].1
-                }
-            };
+            // What wrapped around is judged by the stage's picture.
+            known.retain(|(known, _)| !known.wraps);
+            let place = known.iter().position(|(known, _)| *known == written).unwrap_or_else(|| {
+                known.push((written, Seen::of(mine, &written, expected).reduced(factor)));
+                known.len() - 1
+            });
+            let seen = &known[place].1;
             let (_, _, misfit) = rough(seen, hypothesis, rendered);
             least = least.min(misfit);
         }
@@ -707,9 +641,6 @@ fn candidates(mine: &Mine, is_thorough: bool, mut say: impl FnMut(String)) -> Re
         }
         return Ok(near);
     }
-    if !is_thorough {
-        return Ok(Vec::new());
-    }
-    // No mistake of any stage looks like the picture: one stage is enough to say where it differs.
-    Ok(ranked.into_iter().map(|(_, stage)| stage).take(1).collect())
+    // If no mistake of any stage looks like the picture, one stage is enough to say where it differs.
+    Ok(ranked.into_iter().map(|(_, stage)| stage).take(usize::from(is_thorough)).collect())
 }

@@ -123,23 +123,6 @@ impl Mine {
         Ok(Mine { width, height, rows: height, bytes, ignored: None, most, format, damages, notes })
     }
 
-    /// Which pixels of the picture, smaller by a factor, are compared; `None` if all are.
-    pub fn compared(&self, factor: u32) -> Option<Vec<bool>> {
-        let ignored = self.ignored.as_ref()?;
-        let [columns, rows] = [self.width / factor, self.height / factor];
-        let is_compared = |x: u32, y: u32| {
-            let pixels = (0..factor * factor)
-                .map(|at| (y * factor + at / factor) * self.width + x * factor + at % factor);
-            pixels.into_iter().all(|pixel| !ignored[pixel as usize])
-        };
-        Some(
-            (0..rows)
-                .flat_map(|y| (0..columns).map(move |x| [x, y]))
-                .map(|[x, y]| is_compared(x, y))
-                .collect(),
-        )
-    }
-
     /// Bytes in a step of the file's values, at least 1.
     pub fn step(&self) -> f64 {
         (256.0 / (f64::from(self.most) + 1.0)).max(1.0)

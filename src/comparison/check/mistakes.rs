@@ -19,13 +19,13 @@ const UNIT_VECTOR: &str = "draw points in the cube -1..1 until one is inside the
 
 const ATTENUATION: &str = "return `attenuation * ray_color(scattered, depth - 1, world)`";
 
-/// Each row: id, section to reread, title, remedy, the recipes in which it can show, the sections in which it is right
-/// (`"*"`: all), and how to render it.
+/// Each row: id, section to reread, title, remedy, the recipes in which it can show, whether the picture is right all the
+/// same, and how to render it.
 macro_rules! mistakes {
-    ($($id:literal, $section:literal, $title:literal, $remedy:expr, $applies:expr, $right_in:expr, $($change:expr),*;)*) => {
+    ($($id:literal, $section:literal, $title:literal, $remedy:expr, $applies:expr, $is_right:expr, $($change:expr),*;)*) => {
         /// All mistakes, those of the file and the camera first.
         pub static MISTAKES: &[Mistake] = &[$(Mistake {
-            id: $id, section: $section, title: $title, remedy: $remedy, applies: $applies, right_in: $right_in,
+            id: $id, section: $section, title: $title, remedy: $remedy, applies: $applies, is_right: $is_right,
             changes: &[$($change),*],
         }),*];
     };
@@ -34,219 +34,198 @@ macro_rules! mistakes {
 mistakes! {
     "flipped-rows", "2.2", "the rows are upside down",
         "write the top row first: count j upwards from 0, and let `viewport_v` point down `(0, -viewport_height, 0)`",
-        always, NEVER, |it| it.written.order = Order::Flipped;
+        always, WRONG, |it| it.written.order = Order::Flipped;
     "mirrored-columns", "12.2", "left and right are swapped",
         "let `viewport_u` point right; with `look_from` and `look_at`, `u = unit_vector(cross(vup, w))` in this order",
-        always, NEVER, |it| it.written.order = Order::Mirrored;
+        always, WRONG, |it| it.written.order = Order::Mirrored;
     "swapped-channels", "3.1", "the colour channels are swapped",
         "write red, green, blue in this order; check x, y, z of the colour and formats that want BGR",
-        always, NEVER, |it| swap(it, [2, 1, 0]), |it| swap(it, [1, 0, 2]), |it| swap(it, [0, 2, 1]),
+        always, WRONG, |it| swap(it, [2, 1, 0]), |it| swap(it, [1, 0, 2]), |it| swap(it, [0, 2, 1]),
         |it| swap(it, [1, 2, 0]), |it| swap(it, [2, 0, 1]);
     "no-gamma", "9.5", "gamma is missing",
         "take the square root of each channel in `write_color`, after dividing by the samples",
-        has_gamma, NEVER, |it| it.written.curve = Encoding::Gamma(1.0);
+        has_gamma, WRONG, |it| it.written.curve = Encoding::Book(Transfer::Linear);
     "gamma-early", "9.5", "gamma is applied, although this section does not use it yet",
         "nothing is wrong if you have read on; section 9.5 adds the square root",
         |recipe| recipe.rules.transfer == Transfer::Linear,
-        ALWAYS, |it| it.written.curve = Encoding::Gamma(2.0);
+        RIGHT, |it| it.written.curve = Encoding::Book(Transfer::Gamma2);
     "gamma-twice", "9.5", "gamma is applied twice",
         "take the square root once: either in `write_color` or in your picture library, which may write sRGB from linear values",
-        has_gamma, NEVER, |it| it.written.curve = Encoding::Gamma(4.0);
+        has_gamma, WRONG, |it| it.written.curve = Encoding::Gamma(4.0);
     "gamma-2.2", "9.5", "the curve is gamma 2.2, not the square root",
-        BRIGHTER, has_gamma, NEVER, |it| it.written.curve = Encoding::Gamma(2.2);
+        BRIGHTER, has_gamma, WRONG, |it| it.written.curve = Encoding::Gamma(2.2);
     "gamma-srgb", "9.5", "the curve is that of sRGB, not the square root",
-        BRIGHTER, has_gamma, NEVER, |it| it.written.curve = Encoding::Srgb;
+        BRIGHTER, has_gamma, WRONG, |it| it.written.curve = Encoding::Srgb;
     "wraps-to-0", "8.2", "the brightest values become 0",
         "clamp before the conversion: `int(256 * clamp(x, 0, 0.999))`; 256 does not fit into a byte and becomes 0",
-        always, NEVER, |it| it.written.wraps = true;
+        always, WRONG, |it| it.written.wraps = true;
     "scale-255", "8.2", "channels are multiplied by 255 and truncated",
         "use `int(256 * clamp(x, 0, 0.999))`, or 255.999: with 255, only a value of exactly 1 becomes 255",
-        always, NEVER, |it| it.written.levels = 255.0;
-    "truncated", "3.1", "channels are truncated to whole numbers before they are scaled",
-        "scale first, then convert: `int(256 * x)`, not `int(x) * 256`; divide as floating-point numbers",
-        always, NEVER, |it| it.written.truncates = true;
+        always, WRONG, |it| it.written.levels = 255.0;
     "no-antialiasing", "8.2", "all samples pass through the centre of the pixel",
-        "add a random offset within -0.5..0.5 to i and j for each sample", |recipe| recipe.rules.antialiasing,
-        NEVER, |it| fine(it).recipe.rules.antialiasing = false;
+        "add a random offset within -0.5..0.5 to i and j for each sample", has_antialiasing, WRONG, |it| fine(it).recipe.rules.antialiasing = false;
     "half-pixel-up", "4.2", "the picture is shifted by half a pixel, down and to the right",
         "let `pixel00_loc` be the centre of the first pixel: the upper left corner plus `0.5 * (pixel_delta_u + pixel_delta_v)`",
-        has_rays, NEVER, |it| fine(it).plain().first_pixel = [0.0; 2];
+        has_rays, WRONG, |it| fine(it).plain().first_pixel = [0.0; 2];
     "half-pixel-down", "8.2", "the picture is shifted by half a pixel, up and to the left",
         "draw the offsets of a sample from -0.5..0.5, not from 0..1: `pixel00_loc` is already the pixel's centre",
-        has_rays, NEVER, |it| fine(it).plain().first_pixel = [1.0; 2];
+        has_rays, WRONG, |it| fine(it).plain().first_pixel = [1.0; 2];
     "width-less-one", "4.2", "pixels are spaced by the width less one",
         "divide the viewport by `image_width` and `image_height`; older editions had `image_width - 1`",
-        has_rays, NEVER, |it| fine(it).plain().spacings = |pixels| pixels - 1.0;
+        has_rays, WRONG, |it| fine(it).plain().spacings = |pixels| pixels - 1.0;
     "integer-aspect", "4.2", "the aspect ratio is a whole number",
         "divide as floating-point numbers: `double(image_width) / image_height`, and `16.0 / 9.0`",
-        has_rays, NEVER, |it| it.plain().aspect = |width, height| (width / height).max(1).into();
+        has_rays, WRONG, |it| it.plain().aspect = |width, height| (width / height).max(1).into();
     "vfov-radians", "12.1", "the field of view is used as radians",
         "convert it first: `theta = degrees_to_radians(vfov)`",
-        has_rays, NEVER, |it| {
-            let vfov = &mut it.recipe.camera.vfov_degrees;
-            *vfov = 2.0 * (*vfov / 2.0).tan().abs().atan().to_degrees();
-        };
+        has_rays, WRONG, |it| field_of_view(it, |half| half.to_degrees().tan());
     "sky-reversed", "4.2", "the sky is upside down",
         "blend `(1 - a) * white + a * blue`, with `a = 0.5 * (unit_direction.y + 1)`",
-        has_rays, NEVER, |it| {
+        has_rays, WRONG, |it| {
             let sky = &mut Arc::make_mut(&mut it.recipe.scene).sky;
             std::mem::swap(&mut sky.bottom, &mut sky.top);
         };
     "half-b-sign", "6.2", "the quadratic formula has the wrong sign",
         "with `oc = center - origin`, `h = dot(direction, oc)` and the roots are `(h - sqrtd) / a` and `(h + sqrtd) / a`; with `oc = origin - center`, they are `(-h - sqrtd) / a` and `(-h + sqrtd) / a`",
-        |recipe| has_rays(recipe) && has_spheres(recipe),
-        NEVER, |it| it.plain().roots = |a, h, c| [-1.0, 1.0].map(|sign| (-h + sign * (h * h - a * c).sqrt()) / a);
+        has_solids,
+        WRONG, |it| it.plain().roots = |a, h, c| [-1.0, 1.0].map(|sign| (-h + sign * (h * h - a * c).sqrt()) / a);
     "last-hit-wins", "6.5", "the last sphere in the list hides nearer ones",
         "pass `interval(ray_t.min, closest_so_far)` to `hit`, and set `closest_so_far = temp_rec.t` after each hit",
         |recipe| has_rays(recipe) && recipe.scene.spheres.len() > 1,
-        NEVER, |it| it.plain().t_max = |_| f64::INFINITY;
+        WRONG, |it| it.plain().t_max = |_| f64::INFINITY;
     "zero-t-min", "9.3", "rays hit the surface that they start on (shadow acne)",
         "let hits begin at 0.001: `world.hit(r, interval(0.001, infinity), rec)`",
         |recipe| has_bounces(recipe) && recipe.rules.surface != SurfaceRule::Acne && recipe.rules.diffuse != Diffuse::Hemisphere,
-        NEVER, |it| it.plain().t_min = Some(0.0);
+        WRONG, |it| it.plain().t_min = Some(0.0);
     "acne-early", "9.3", "rays hit the surface that they start on (shadow acne), as in the listings of 9.1 and 9.2",
         "nothing is wrong yet; section 9.3 lets hits begin at 0.001, which removes the acne",
         |recipe| has_matte(recipe, Diffuse::Hemisphere),
-        ALWAYS, |it| it.plain().t_min = Some(0.0), |it| {
-            it.recipe.settings.max_depth = 10;
-            it.plain().t_min = Some(0.0);
-        }, |it| {
-            it.recipe.settings.max_depth = 50;
-            it.plain().t_min = Some(0.0);
-        };
+        RIGHT, |it| it.plain().t_min = Some(0.0), |it| acne(it, 10), |it| acne(it, 50);
     "normal-not-unit", "6.1", "the normal does not have length 1",
         "divide by the radius: `outward_normal = (rec.p - center) / radius`",
-        |recipe| has_rays(recipe) && has_spheres(recipe),
-        NEVER, |it| it.plain().normal = |to_point, _| to_point;
+        has_solids,
+        WRONG, |it| it.plain().normal = |to_point, _| to_point;
     "normals-not-flipped", "6.4", "the normal is not turned against the ray inside a sphere",
         "call `rec.set_face_normal(r, outward_normal)` in `sphere::hit`, and use `rec.front_face` in `dielectric::scatter`",
-        has_glass, NEVER, |it| it.plain().is_front = |_, _| true;
+        has_glass, WRONG, |it| it.plain().is_front = |_, _| true;
     "hemisphere", "9.4", "matte surfaces scatter uniformly over the hemisphere",
         "let the direction be `rec.normal + random_unit_vector()`",
         |recipe| has_matte(recipe, Diffuse::Lambertian),
-        NEVER, |it| it.recipe.rules.diffuse = Diffuse::Hemisphere;
+        WRONG, |it| it.recipe.rules.diffuse = Diffuse::Hemisphere;
     "lambertian-early", "9.4", "matte surfaces are Lambertian, although this section uses a uniform hemisphere",
         "nothing is wrong if you have read on; section 9.4 adds it",
         |recipe| has_matte(recipe, Diffuse::Hemisphere),
-        ALWAYS, |it| it.recipe.rules.diffuse = Diffuse::Lambertian;
+        RIGHT, |it| it.recipe.rules.diffuse = Diffuse::Lambertian;
     "point-in-sphere", "9.4", "matte surfaces scatter to a point in the unit sphere, not on it",
         "normalise the random vector: `rec.normal + random_unit_vector()`",
         |recipe| has_matte(recipe, Diffuse::Lambertian),
-        NEVER, |it| it.plain().vector = Random::in_unit_sphere;
+        WRONG, |it| it.plain().vector = Random::in_unit_sphere;
     "bounce-limit", "9.2", "paths end after too few bounces",
         "set `max_depth` to 50, and pass `depth - 1` to the next call only",
-        has_bounces, NEVER, |it| limit(it, 1), |it| limit(it, 2), |it| limit(it, 3), |it| limit(it, 4),
+        has_bounces, WRONG, |it| limit(it, 1), |it| limit(it, 2), |it| limit(it, 3), |it| limit(it, 4),
         |it| limit(it, 5), |it| limit(it, 6), |it| limit(it, 8), |it| limit(it, 10), |it| limit(it, 15);
     "fuzz-missing", "10.6", "fuzz has no effect",
         "add `fuzz * random_unit_vector()` to the reflected direction, and store `fuzz` in the constructor",
-        has_fuzz, NEVER, |it| materials(it, no_fuzz);
+        has_fuzz, WRONG, |it| materials(it, no_fuzz);
     "fuzz-unnormalised", "10.6", "the reflected direction is not normalised before fuzz is added",
         "normalise first: `reflected = unit_vector(reflected) + (fuzz * random_unit_vector())`",
-        has_fuzz, NEVER, |it| it.plain().before_fuzz = |direction| direction;
+        has_fuzz, WRONG, |it| it.plain().before_fuzz = |direction| direction;
     "refract-unnormalised", "11.2", "the direction is not normalised before it is refracted or reflected",
         "use `unit_direction = unit_vector(r_in.direction())` for `cos_theta`, `refract` and `reflect`",
-        has_glass, NEVER, |it| it.plain().before_glass = |direction| direction;
+        has_glass, WRONG, |it| it.plain().before_glass = |direction| direction;
     "index-inverted", "11.2", "the refraction index is inverted",
         "write `ri = rec.front_face ? (1.0 / refraction_index) : refraction_index`",
-        has_glass, NEVER, |it| materials(it, invert);
+        has_glass, WRONG, |it| materials(it, invert);
     "glass-black", "11.2", "glass is black",
         "set `attenuation = color(1.0, 1.0, 1.0)` in `dielectric::scatter`, and return `true`",
-        has_glass, NEVER, |it| materials(it, |material| {
+        has_glass, WRONG, |it| materials(it, |material| {
             if let Material::Dielectric { .. } = material {
                 *material = Material::Lambertian { albedo: DVec3::ZERO };
             }
         });
     "glass-swapped", "11.3", "glass reflects where it should refract, and refracts where it should reflect",
         "if `(cannot_refract || reflectance(cos_theta, ri) > random_double())` reflect, else refract",
-        |recipe| has_glass(recipe) && recipe.rules.dielectric != DielectricLaws::RefractOnly,
-        NEVER, |it| it.plain().swaps_glass = true;
+        has_reflecting_glass,
+        WRONG, |it| it.plain().swaps_glass = true;
     "always-refract", "11.3", "glass refracts even where Snell's law has no solution",
         "reflect if `ri * sin_theta > 1.0`",
-        |recipe| has_glass(recipe) && recipe.rules.dielectric != DielectricLaws::RefractOnly,
-        NEVER, |it| it.recipe.rules.dielectric = DielectricLaws::RefractOnly;
+        has_reflecting_glass,
+        WRONG, |it| it.recipe.rules.dielectric = DielectricLaws::RefractOnly;
     "schlick-missing", "11.4", "glass does not reflect at grazing angles (Schlick's approximation)",
         "also reflect if `reflectance(cos_theta, ri) > random_double()`",
-        |recipe| has_glass(recipe) && recipe.rules.dielectric == DielectricLaws::Schlick,
-        NEVER, |it| it.recipe.rules.dielectric = DielectricLaws::TotalReflection;
+        has_schlick,
+        WRONG, |it| it.recipe.rules.dielectric = DielectricLaws::TotalReflection;
     "hollow-missing", "11.5", "the sphere of air inside the glass sphere is missing",
         "add a sphere of radius 0.4 at the same place, of `dielectric(1.00 / 1.50)`",
-        has_bubble, NEVER, |it| {
-            let scene = Arc::make_mut(&mut it.recipe.scene);
-            if let Some(index) = bubble(scene) {
-                scene.spheres.remove(index);
-            }
-        };
+        has_bubble, WRONG, |it| change_bubble(it, |scene, bubble| _ = scene.spheres.remove(bubble));
     "hollow-index", "11.5", "the sphere inside the glass sphere is glass, too",
         "the inner sphere is air in glass: `dielectric(1.00 / 1.50)`",
-        has_bubble, NEVER, |it| {
-            let scene = Arc::make_mut(&mut it.recipe.scene);
-            if let Some(index) = bubble(scene) {
-                invert(&mut scene.materials[scene.spheres[index].material].material);
-            }
-        };
+        has_bubble, WRONG,
+        |it| change_bubble(it, |scene, bubble| invert(&mut scene.materials[scene.spheres[bubble].material].material));
     "lens-centre", "13.2", "all rays start at the centre of the lens",
         "let `ray_origin = (defocus_angle <= 0) ? center : defocus_disk_sample()`, and subtract it from `pixel_sample`",
-        has_lens, NEVER, |it| it.recipe.camera.defocus_angle_degrees = 0.0;
+        has_lens, WRONG, |it| it.recipe.camera.defocus_angle_degrees = 0.0;
     "lens-origin", "13.2", "rays start at the centre of the lens, but are aimed from another point of it",
         SAME_POINT,
-        has_lens, NEVER, |it| it.plain().lens = |eye, on_lens, target| [eye, target - on_lens];
+        has_lens, WRONG, |it| it.plain().lens = |eye, on_lens, target| [eye, target - on_lens];
     "lens-aim", "13.2", "rays start anywhere on the lens, but are aimed from its centre",
         SAME_POINT,
-        has_lens, NEVER, |it| it.plain().lens = |eye, on_lens, target| [on_lens, target - eye];
+        has_lens, WRONG, |it| it.plain().lens = |eye, on_lens, target| [on_lens, target - eye];
     "focus-distance-one", "13.2", "the plane in focus is 1 away",
         "use `focus_dist` for the viewport: `viewport_height = 2 * h * focus_dist`, and `center - focus_dist * w`",
-        has_lens, NEVER, |it| it.recipe.camera.focus_distance = Some(1.0);
+        has_lens, WRONG, |it| it.recipe.camera.focus_distance = Some(1.0);
     "same-seed", "9.1", "every pixel uses the same random numbers",
         "seed the generator once, before the loops, not for each pixel",
         |recipe| recipe.rules.antialiasing && has_bounces(recipe),
-        NEVER, |it| it.plain().random = |_| 0;
+        WRONG, |it| it.plain().random = |_| 0;
     "rounds", "8.2", "values are rounded to the nearest of 255 steps, not truncated",
-        "nothing is wrong", always, ALWAYS, |it| (it.written.rounds, it.written.levels) = (true, 255.0);
+        "nothing is wrong", always, RIGHT, |it| (it.written.rounds, it.written.levels) = (true, 255.0);
     "rotated", "12.2", "the picture is turned by 180 degrees",
         "with `w = unit_vector(look_from - look_at)`: `u = unit_vector(cross(vup, w))` and `v = cross(w, u)`, in this order",
-        always, NEVER, |it| it.written.order = Order::Rotated;
+        always, WRONG, |it| it.written.order = Order::Rotated;
     "moved", "2.2", "the picture is moved by a whole pixel",
         "let i run from 0 to `image_width - 1` and j from 0 to `image_height - 1`, and let `pixel00_loc` be the first pixel's centre",
-        always, NEVER, |it| it.written.order = Order::Moved(1, 0), |it| it.written.order = Order::Moved(-1, 0),
-        |it| it.written.order = Order::Moved(0, 1), |it| it.written.order = Order::Moved(0, -1);
+        always, WRONG, |it| moved(it, 1, 0), |it| moved(it, -1, 0), |it| moved(it, 0, 1), |it| moved(it, 0, -1),
+        |it| moved(it, 1, 1), |it| moved(it, -1, -1), |it| moved(it, 1, -1), |it| moved(it, -1, 1);
     "columns-first", "2.2", "the pixels are written column by column",
         "let the outer loop count rows and the inner one columns: for j, then for i",
-        always, NEVER, |it| it.written.order = Order::Columns, |it| exchange(it, Order::Transposed);
+        always, WRONG, |it| it.written.order = Order::Columns, |it| exchange(it, Order::Transposed);
     "sides-exchanged", "2.2", "width and height are exchanged in the header",
-        "write `image_width` first, then `image_height`", always, NEVER, |it| exchange(it, Order::Exchanged);
+        "write `image_width` first, then `image_height`", always, WRONG, |it| exchange(it, Order::Exchanged);
     "planar", "2.2", "all red values come first, then all green ones, then all blue ones",
-        "write the three values of a pixel one after the other", always, NEVER, |it| it.written.order = Order::Planar;
+        "write the three values of a pixel one after the other", always, WRONG, |it| it.written.order = Order::Planar;
     "row-length", "2.2", "the rows are not as long as the header says",
         "let i run from 0 to `image_width - 1`, and write the same `image_width` to the header; a PPM has no padding",
-        always, NEVER, |it| it.written.order = Order::Long, |it| it.written.order = Order::Short,
+        always, WRONG, |it| it.written.order = Order::Long, |it| it.written.order = Order::Short,
         |it| it.written.order = Order::Padded;
     "gradient-over-width", "2.2", "column and row are divided by width and height, so no value reaches 1",
         "divide by `image_width - 1` and `image_height - 1`: the last pixel is then 1",
-        is_gradient, NEVER, |it| it.plain().gradient = |_, [x, y]| DVec3::new(x, y, 0.0);
+        is_gradient, WRONG, |it| it.plain().gradient = |_, [x, y]| DVec3::new(x, y, 0.0);
     "gradient-turned", "2.2", "red follows the rows and green the columns",
         "red is `i / (image_width - 1)`, green is `j / (image_height - 1)`",
-        is_gradient, NEVER, |it| it.plain().gradient = |[x, y], _| DVec3::new(y, x, 0.0);
+        is_gradient, WRONG, |it| it.plain().gradient = |[x, y], _| DVec3::new(y, x, 0.0);
     "edition-gradient", "2.2", "the colours are those of an older edition, with blue and with rows counted from the bottom",
-        "nothing is wrong; since edition 4, blue is 0 and green grows downwards", is_gradient, ALWAYS,
+        "nothing is wrong; since edition 4, blue is 0 and green grows downwards", is_gradient, RIGHT,
         |it| older_gradient(it, |[x, y], _| DVec3::new(x, y, 0.25)),
         |it| older_gradient(it, |_, [x, y]| DVec3::new(x, y, 0.2));
     "edition-camera", "4.2", "the camera is that of an older edition",
         "nothing is wrong; since edition 4, pixels are spaced by the whole width, and rays pass through their centres",
-        has_rays, ALWAYS, edition_3_camera, |it| {
+        has_rays, RIGHT, edition_3_camera, |it| {
             if !it.recipe.rules.antialiasing {
                 fine(it).plain().first_pixel = [0.0, 1.0];
             }
         };
     "edition-diffuse", "9.1", "matte surfaces and the camera are those of edition 3",
         "nothing is wrong; edition 4 begins with the hemisphere, and edition 3 with points in the unit sphere",
-        |recipe| has_bounces(recipe) && recipe.scene.materials.len() == 1, ALWAYS,
-        |it| edition_3_diffuse(it, 0.0, 1.0), |it| edition_3_diffuse(it, 0.0, 2.0), |it| edition_3_diffuse(it, 0.001, 2.0),
+        has_one_material, RIGHT,
+        |it| edition_3_diffuse(it, 0.0, Transfer::Linear), |it| edition_3_diffuse(it, 0.0, Transfer::Gamma2),
+        |it| edition_3_diffuse(it, 0.001, Transfer::Gamma2),
         |it| {
             edition_3_camera(it);
-            it.written.curve = Encoding::Gamma(2.0);
+            it.written.curve = Encoding::Book(Transfer::Gamma2);
         };
     "edition-scene", "10.5", "scene and camera are those of an older edition",
-        "nothing is wrong; edition 4 changed the colours, positions and views", |recipe| has_metal(recipe), ALWAYS,
+        "nothing is wrong; edition 4 changed the colours, positions and views", has_metal, RIGHT,
         |it| older_scene(it, 0.4), |it| {
             older_scene(it, 0.4);
             it.plain().fuzz = Random::in_unit_sphere;
@@ -255,167 +234,163 @@ mistakes! {
             it.plain().fuzz = Random::in_unit_sphere;
         };
     "edition-fuzz", "10.6", "fuzz is drawn from inside the unit sphere, as in older editions",
-        "nothing is wrong; edition 4 uses `fuzz * random_unit_vector()`", has_fuzz, ALWAYS,
+        "nothing is wrong; edition 4 uses `fuzz * random_unit_vector()`", has_fuzz, RIGHT,
         |it| it.plain().fuzz = Random::in_unit_sphere, |it| {
             edition_3_camera(it);
             it.plain().fuzz = Random::in_unit_sphere;
         };
     "listing-79", "11.5", "the golden ball has fuzz 0, as listing 79 of the book prints it",
         "nothing is wrong; the listing has a misprint: the book's picture has `metal(color(0.8, 0.6, 0.2), 1.0)`",
-        |recipe| has_bubble(recipe) && recipe.camera == Camera::BOOK, ALWAYS, |it| materials(it, no_fuzz);
+        |recipe| has_bubble(recipe) && recipe.camera == Camera::BOOK, RIGHT, |it| materials(it, no_fuzz);
     "reflectance", "9.5", "the surfaces do not reflect 50 % of the light",
         "nothing is wrong if you do the exercise of 9.5; the book's picture has 50 %",
-        |recipe| has_bounces(recipe) && recipe.scene.materials.len() == 1 && !recipe.rules.reflectance_strips, ALWAYS,
+        |recipe| has_one_material(recipe) && !recipe.rules.reflectance_strips, RIGHT,
         |it| grey(it, 0.1), |it| grey(it, 0.3), |it| grey(it, 0.7), |it| grey(it, 0.9);
     "brightness", "8.2", "the brightness is off by a constant factor",
         "divide the sum of a pixel's samples by their number, exactly once, before the square root",
-        has_rays, NEVER, |it| it.fit = Some(Fit::Gain);
+        has_rays, WRONG, |it| it.fit = Some(Fit::Gain);
     "sum-kept", "8.2", "the sum of a pixel begins with the colour of the one before",
         "set `pixel_color` to `color(0, 0, 0)` inside the loop over the pixels",
-        |recipe| recipe.rules.antialiasing, NEVER, |it| it.fit = Some(Fit::Carry);
+        has_antialiasing, WRONG, |it| it.fit = Some(Fit::Carry);
     "wide-filter", "8.2", "the samples of a pixel are spread too widely, so the picture is blurred",
         "draw the offsets from -0.5..0.5: `vec3(random_double() - 0.5, random_double() - 0.5, 0)`",
-        |recipe| recipe.rules.antialiasing, NEVER, |it| fine(it).plain().filter = 3.0,
+        has_antialiasing, WRONG, |it| fine(it).plain().filter = 3.0,
         |it| fine(it).plain().filter = 4.0;
     "fixed-aspect", "4.2", "the aspect ratio is not that of the picture",
-        "`viewport_width = viewport_height * (double(image_width) / image_height)`", has_rays, NEVER,
+        "`viewport_width = viewport_height * (double(image_width) / image_height)`", has_rays, WRONG,
         |it| it.plain().aspect = |_, _| 16.0 / 9.0, |it| it.plain().aspect = |_, _| 4.0 / 3.0,
         |it| it.plain().aspect = |_, _| 1.0,
         |it| it.plain().aspect = |width, height| f64::from(height) / f64::from(width);
     "backwards", "12.2", "the camera looks backwards",
         "`w = unit_vector(look_from - look_at)` points back: subtract `focus_dist * w`, do not add it",
-        has_rays, NEVER, look_back, |it| {
-            look_back(it);
-            it.written.order = Order::Mirrored;
-        }, |it| {
-            look_back(it);
-            it.written.order = Order::Rotated;
-        };
+        has_rays, WRONG, |it| look_back(it, Order::Rows), |it| look_back(it, Order::Mirrored),
+        |it| look_back(it, Order::Rotated);
     "vfov-tangent", "12.1", "the tangent is not taken of half the field of view",
-        "`h = std::tan(theta / 2)`, and `viewport_height = 2 * h * focus_dist`", has_rays, NEVER,
+        "`h = std::tan(theta / 2)`, and `viewport_height = 2 * h * focus_dist`", has_rays, WRONG,
         |it| field_of_view(it, |half| (2.0 * half).tan()), |it| field_of_view(it, |half| (half / 2.0).tan()),
         |it| field_of_view(it, |half| half.tan() / 2.0), |it| field_of_view(it, |half| 2.0 * half.tan());
     "hfov", "12.1", "the field of view is used for the width instead of the height",
-        "`viewport_height = 2 * h * focus_dist`; the width follows from it", has_rays, NEVER, |it| {
+        "`viewport_height = 2 * h * focus_dist`; the width follows from it", has_rays, WRONG, |it| {
             let [width, height] = it.size().map(f64::from);
             let half = it.recipe.camera.vfov_degrees.to_radians() / 2.0;
             it.recipe.camera.vfov_degrees = 2.0 * (half.tan() * height / width).atan().to_degrees();
         };
     "sky-not-unit", "4.2", "the sky uses the direction before it is normalised",
         "`unit_direction = unit_vector(r.direction())`, and `a = 0.5 * (unit_direction.y() + 1.0)`",
-        has_rays, NEVER, |it| it.plain().sky = |direction| 0.5 * (direction.y + 1.0);
+        has_rays, WRONG, |it| it.plain().sky = |direction| 0.5 * (direction.y + 1.0);
     "sky-blend", "4.2", "the sky's gradient does not follow 0.5 * (y + 1)",
-        "`a = 0.5 * (unit_direction.y() + 1.0)`, and `color = (1.0 - a) * white + a * blue`", has_rays, NEVER,
+        "`a = 0.5 * (unit_direction.y() + 1.0)`, and `color = (1.0 - a) * white + a * blue`", has_rays, WRONG,
         |it| it.plain().sky = |direction| direction.normalize().y,
         |it| it.plain().sky = |direction| 0.5 * (direction.normalize().x + 1.0),
         |it| it.plain().sky = |direction| 0.5 * (direction.normalize().z + 1.0),
         |it| it.plain().sky = |_| 1.0, |it| it.plain().sky = |_| 0.0;
     "far-root", "6.2", "the farther of the two roots is used",
-        "try `(h - sqrtd) / a` first, and `(h + sqrtd) / a` only if that is outside the interval", has_solids, NEVER,
+        "try `(h - sqrtd) / a` first, and `(h + sqrtd) / a` only if that is outside the interval", has_solids, WRONG,
         |it| it.plain().roots = |a, h, c| [(h + (h * h - a * c).sqrt()) / a; 2],
         |it| it.plain().roots = |a, h, c| [1.0, -1.0].map(|sign| (h + sign * (h * h - a * c).sqrt()) / a);
     "near-root-only", "6.2", "only the nearer root is tried",
-        "if `(h - sqrtd) / a` is outside the interval, try `(h + sqrtd) / a`", has_solids, NEVER,
+        "if `(h - sqrtd) / a` is outside the interval, try `(h + sqrtd) / a`", has_solids, WRONG,
         |it| it.plain().roots = |a, h, c| [(h - (h * h - a * c).sqrt()) / a; 2];
     "a-missing", "6.2", "the quadratic formula lacks a, as if directions had length 1",
-        "`a = r.direction().length_squared()`, in the discriminant and below both roots", has_solids, NEVER,
+        "`a = r.direction().length_squared()`, in the discriminant and below both roots", has_solids, WRONG,
         |it| it.plain().roots = |_, h, c| [-1.0, 1.0].map(|sign| h + sign * (h * h - c).sqrt()),
         |it| it.plain().roots = |a, h, c| [-1.0, 1.0].map(|sign| h + sign * (h * h - a * c).sqrt());
     "no-t-min", "6.3", "surfaces behind the start of a ray are hit",
-        "accept a root only if it is inside the interval: `ray_t.surrounds(root)`", has_solids, NEVER,
+        "accept a root only if it is inside the interval: `ray_t.surrounds(root)`", has_solids, WRONG,
         |it| it.plain().t_min = Some(f64::NEG_INFINITY);
     "point-at-unit", "6.2", "the hit point is computed with the normalised direction, but t belongs to the original",
-        "`rec.p = r.at(rec.t)`, which is `origin + t * direction`", has_solids, NEVER, |it| it.plain().along = DVec3::normalize;
+        "`rec.p = r.at(rec.t)`, which is `origin + t * direction`", has_solids, WRONG, |it| it.plain().along = DVec3::normalize;
     "normal-reversed", "6.1", "the normal points inwards",
-        "`outward_normal = (rec.p - center) / radius`, not `center - rec.p`", has_solids, NEVER,
+        "`outward_normal = (rec.p - center) / radius`, not `center - rec.p`", has_solids, WRONG,
         |it| {
             it.plain().normal = |to_point, radius| -to_point / radius;
             it.plain().is_front = |_, _| true;
         };
     "normal-colour", "6.1", "normals are shown without being moved to 0..1",
-        "return `0.5 * color(N.x() + 1, N.y() + 1, N.z() + 1)`", |recipe| recipe.rules.shading == Shading::Normals, NEVER,
+        "return `0.5 * color(N.x() + 1, N.y() + 1, N.z() + 1)`", |recipe| recipe.rules.shading == Shading::Normals, WRONG,
         |it| it.plain().normal_colour = |normal| normal, |it| it.plain().normal_colour = DVec3::abs;
     "ground", "6.5", "the ground has the wrong size or position",
-        "`make_shared<sphere>(point3(0, -100.5, -1), 100)`", |recipe| ground(&recipe.scene).is_some(), NEVER,
+        "`make_shared<sphere>(point3(0, -100.5, -1), 100)`", |recipe| ground(&recipe.scene).is_some(), WRONG,
         |it| move_ground(it, 1000.0, -1000.5), |it| move_ground(it, 100.0, -100.0), |it| move_ground(it, 100.0, -101.0);
     "vector-0-to-1", "9.1", "random vectors only have positive x, y and z",
-        UNIT_VECTOR, has_bounces, NEVER, |it| vector(it, |random| random.triple().normalize()), |it| vector(it, Random::triple);
+        UNIT_VECTOR, has_bounces, WRONG, |it| vector(it, |random| random.triple().normalize()), |it| vector(it, Random::triple);
     "vector-cube", "9.1", "random vectors are drawn from a cube, so directions crowd at its corners",
-        UNIT_VECTOR, has_bounces, NEVER, |it| vector(it, |random| (2.0 * random.triple() - 1.0).normalize()),
+        UNIT_VECTOR, has_bounces, WRONG, |it| vector(it, |random| (2.0 * random.triple() - 1.0).normalize()),
         |it| vector(it, |random| 2.0 * random.triple() - 1.0);
     "vector-polar", "9.1", "directions crowd at the poles, because both angles are uniform",
         "let the height z be uniform in -1..1 instead of the angle, or use `random_unit_vector()`",
-        has_bounces, NEVER, |it| vector(it, |random| polar(random).xzy()), |it| vector(it, polar),
+        has_bounces, WRONG, |it| vector(it, |random| polar(random).xzy()), |it| vector(it, polar),
         |it| vector(it, |random| polar(random).zxy());
     "hemisphere-inverted", "9.1", "directions point into the surface: the test of the hemisphere is inverted",
-        "return `on_unit_sphere` if `dot(on_unit_sphere, normal) > 0.0`, else `-on_unit_sphere`", has_bounces, NEVER,
+        "return `on_unit_sphere` if `dot(on_unit_sphere, normal) > 0.0`, else `-on_unit_sphere`", has_bounces, WRONG,
         |it| it.plain().scatter = Some(|v, normal, _| if v.dot(normal) > 0.0 { -v } else { v }),
         |it| it.plain().scatter = Some(|v, normal, _| v - normal);
     "hemisphere-missing", "9.1", "directions point everywhere, even into the surface",
-        "use `random_on_hemisphere(rec.normal)`, or `rec.normal + random_unit_vector()`", has_bounces, NEVER,
+        "use `random_on_hemisphere(rec.normal)`, or `rec.normal + random_unit_vector()`", has_bounces, WRONG,
         |it| it.plain().scatter = Some(|v, _, _| v);
     "scatter-to-point", "9.4", "matte surfaces scatter from the origin of space, not from the point",
-        "the ray is `ray(rec.p, rec.normal + random_unit_vector())`: a direction, not a point", has_bounces, NEVER,
+        "the ray is `ray(rec.p, rec.normal + random_unit_vector())`: a direction, not a point", has_bounces, WRONG,
         |it| it.plain().scatter = Some(|v, normal, point| point + normal + v),
         |it| it.plain().scatter = Some(|v, _, point| point + v);
     "no-random-vector", "9.4", "matte surfaces scatter along the normal only",
-        "add a random vector: `rec.normal + random_unit_vector()`", has_bounces, NEVER,
+        "add a random vector: `rec.normal + random_unit_vector()`", has_bounces, WRONG,
         |it| it.plain().scatter = Some(|_, normal, _| normal);
     "attenuation-missing", "9.2", "surfaces absorb nothing: the attenuation is not used",
-        ATTENUATION, has_bounces, NEVER, |it| it.plain().combine = |_| [DVec3::ZERO, DVec3::ONE];
+        ATTENUATION, has_bounces, WRONG, |it| it.plain().combine = |_| [DVec3::ZERO, DVec3::ONE];
     "attenuation-twice", "10.4", "the attenuation is used twice",
-        ATTENUATION, has_bounces, NEVER, |it| it.plain().combine = |albedo| [DVec3::ZERO, albedo * albedo];
+        ATTENUATION, has_bounces, WRONG, |it| it.plain().combine = |albedo| [DVec3::ZERO, albedo * albedo];
     "attenuation-added", "10.4", "the attenuation is added instead of multiplied",
-        ATTENUATION, has_bounces, NEVER, |it| it.plain().combine = |albedo| [albedo, DVec3::ONE],
+        ATTENUATION, has_bounces, WRONG, |it| it.plain().combine = |albedo| [albedo, DVec3::ONE],
         |it| it.plain().combine = |albedo| [albedo / 2.0, DVec3::splat(0.5)];
     "reflect-once", "10.2", "the reflected direction lacks the factor 2, so it runs along the surface",
-        "return `v - 2 * dot(v, n) * n`", |recipe| has_metal(recipe) || has_glass(recipe), NEVER, |it| it.plain().reflects = 1.0;
+        "return `v - 2 * dot(v, n) * n`", |recipe| has_metal(recipe) || has_glass(recipe), WRONG, |it| it.plain().reflects = 1.0;
     "fuzz-below", "10.6", "fuzzy reflections that point below the surface are not absorbed",
-        "return `(dot(scattered.direction(), rec.normal) > 0)`", has_fuzz, NEVER, |it| it.plain().absorbs_below = false;
+        "return `(dot(scattered.direction(), rec.normal) > 0)`", has_fuzz, WRONG, |it| it.plain().absorbs_below = false;
     "fuzz-scaled", "10.6", "fuzz has the wrong size", "`reflected = unit_vector(reflected) + (fuzz * random_unit_vector())`",
-        has_fuzz, NEVER, |it| it.plain().fuzz = |random| 2.0 * random.unit_vector(),
+        has_fuzz, WRONG, |it| it.plain().fuzz = |random| 2.0 * random.unit_vector(),
         |it| it.plain().fuzz = |random| 0.5 * random.unit_vector(), |it| it.plain().fuzz = Random::triple,
         |it| it.plain().fuzz = |random| 2.0 * random.triple() - 1.0;
     "origin-moved", "11.2", "bounced rays start above the surface, even refracted ones",
-        "start at `rec.p`, and let hits begin at 0.001", has_bounces, NEVER, |it| it.plain().lift = 0.001,
+        "start at `rec.p`, and let hits begin at 0.001", has_bounces, WRONG, |it| it.plain().lift = 0.001,
         |it| it.plain().lift = 0.01, |it| it.plain().lift = 0.1;
     "refract-outwards", "11.2", "the refracted direction leaves on the wrong side",
-        "`r_out_parallel = -std::sqrt(std::fabs(1.0 - r_out_perp.length_squared())) * n`", has_glass, NEVER,
+        "`r_out_parallel = -std::sqrt(std::fabs(1.0 - r_out_perp.length_squared())) * n`", has_glass, WRONG,
         |it| it.plain().inwards = -1.0;
-    "glass-reflects", "11.2", "glass only reflects", "refract unless `ri * sin_theta > 1.0`", has_glass, NEVER,
+    "glass-reflects", "11.2", "glass only reflects", "refract unless `ri * sin_theta > 1.0`", has_glass, WRONG,
         |it| {
             it.plain().swaps_glass = true;
             it.recipe.rules.dielectric = DielectricLaws::RefractOnly;
         };
     "schlick-power", "11.4", "Schlick's formula uses a power other than 5",
-        "return `r0 + (1 - r0) * std::pow(1 - cosine, 5)`", has_schlick, NEVER,
+        "return `r0 + (1 - r0) * std::pow(1 - cosine, 5)`", has_schlick, WRONG,
         |it| it.plain().reflectance = |cosine, ratio| reflectance(schlick(1.0, ratio), cosine, 1),
         |it| it.plain().reflectance = |cosine, ratio| reflectance(schlick(1.0, ratio), cosine, 2),
         |it| it.plain().reflectance = |cosine, ratio| reflectance(schlick(1.0, ratio), cosine, 3);
     "schlick-r0", "11.4", "Schlick's r0 is not squared",
-        "`r0 = (1 - refraction_index) / (1 + refraction_index)`, then `r0 = r0 * r0`", has_schlick, NEVER,
+        "`r0 = (1 - refraction_index) / (1 + refraction_index)`, then `r0 = r0 * r0`", has_schlick, WRONG,
         |it| it.plain().reflectance = |cosine, ratio| reflectance(((1.0 - ratio) / (1.0 + ratio)).abs(), cosine, 5),
         |it| it.plain().reflectance = |cosine, ratio| reflectance((1.0 - ratio) / (1.0 + ratio), cosine, 5);
     "schlick-coin", "11.4", "reflection is not decided by Schlick's reflectance and a random number",
-        "reflect if `reflectance(cos_theta, ri) > random_double()`", has_schlick, NEVER,
+        "reflect if `reflectance(cos_theta, ri) > random_double()`", has_schlick, WRONG,
         |it| it.plain().reflectance = |_, _| 0.5,
         |it| it.plain().reflectance = |cosine, ratio| f64::from(u8::from(schlick(cosine, ratio) > 0.5));
-    "glass-tinted", "11.2", "glass absorbs light", "set `attenuation = color(1.0, 1.0, 1.0)` in `dielectric::scatter`", has_glass, NEVER,
+    "glass-tinted", "11.2", "glass absorbs light", "set `attenuation = color(1.0, 1.0, 1.0)` in `dielectric::scatter`", has_glass, WRONG,
         |it| it.plain().glass = DVec3::splat(0.9), |it| it.plain().glass = DVec3::splat(0.8),
         |it| it.plain().glass = DVec3::splat(0.5), |it| it.plain().glass = DVec3::new(0.5, 0.7, 1.0);
     "lens-radius", "13.2", "the lens has the wrong radius, so the blur is too weak or too strong",
-        "`defocus_radius = focus_dist * std::tan(degrees_to_radians(defocus_angle / 2))`", has_lens, NEVER,
+        "`defocus_radius = focus_dist * std::tan(degrees_to_radians(defocus_angle / 2))`", has_lens, WRONG,
         |it| lens(it, |half, focus| half.tan() / focus), |it| lens(it, |half, _| (2.0 * half).tan()),
         |it| lens(it, |half, _| 0.5 * half.tan()), |it| lens(it, |half, _| half.to_degrees().tan().abs()),
         |it| lens(it, |half, focus| 2.0 * half.tan() / focus);
     "lens-disk", "13.2", "the points on the lens are not spread evenly over a disk",
-        "draw points in the square -1..1 until one is inside the unit disk", has_lens, NEVER,
+        "draw points in the square -1..1 until one is inside the unit disk", has_lens, WRONG,
         |it| fine(it).plain().disk = |pair| pair.map(|x| 2.0 * x - 1.0),
         |it| fine(it).plain().disk = |[u, v]| on_circle(u, v), |it| fine(it).plain().disk = |[_, v]| on_circle(1.0, v);
 }
 
-const NEVER: &[&str] = &[];
-const ALWAYS: &[&str] = &["*"];
+/// Whether a picture with the mistake counts as right.
+const WRONG: bool = false;
+const RIGHT: bool = true;
 
 pub fn applying_to(recipe: &Recipe) -> impl Iterator<Item = &'static Mistake> {
     MISTAKES.iter().filter(|mistake| (mistake.applies)(recipe))
@@ -425,6 +400,11 @@ fn swap(picture: &mut Hypothesis, order: [usize; 3]) {
     let names = order.map(|channel| ["red", "green", "blue"][channel]).join(", ");
     picture.note = Some(format!("the channels seem to be {names}"));
     picture.written.channels = order;
+}
+
+fn acne(picture: &mut Hypothesis, max_depth: u32) {
+    picture.recipe.settings.max_depth = max_depth;
+    picture.plain().t_min = Some(0.0);
 }
 
 /// Limits paths to `limit` rays.
@@ -438,6 +418,10 @@ fn limit(picture: &mut Hypothesis, limit: u32) {
 fn fine(picture: &mut Hypothesis) -> &mut Hypothesis {
     picture.is_fine = true;
     picture
+}
+
+fn moved(picture: &mut Hypothesis, right: i8, down: i8) {
+    picture.written.order = Order::Moved(right, down);
 }
 
 fn exchange(picture: &mut Hypothesis, order: Order) {
@@ -459,14 +443,14 @@ fn edition_3_camera(picture: &mut Hypothesis) {
     steps.first_pixel = if is_spread { [0.5, -0.5] } else { [0.0; 2] };
 }
 
-fn edition_3_diffuse(picture: &mut Hypothesis, t_min: f64, gamma: f64) {
+fn edition_3_diffuse(picture: &mut Hypothesis, t_min: f64, transfer: Transfer) {
     edition_3_camera(picture);
     picture.is_fine = false;
     let steps = picture.plain();
     steps.t_min = Some(t_min);
     steps.scatter = Some(|vector, normal, _| normal + vector);
     steps.vector = Random::in_unit_sphere;
-    picture.written.curve = Encoding::Gamma(gamma);
+    picture.written.curve = Encoding::Book(transfer);
 }
 
 /// Balls, colours and metal of older editions.
@@ -533,7 +517,8 @@ fn grey(picture: &mut Hypothesis, share: f64) {
     }
 }
 
-fn look_back(picture: &mut Hypothesis) {
+fn look_back(picture: &mut Hypothesis, order: Order) {
+    picture.written.order = order;
     let camera = &mut picture.recipe.camera;
     camera.focus_distance = Some(camera.effective_focus_distance());
     camera.look_at = 2.0 * camera.look_from - camera.look_at;
@@ -572,6 +557,13 @@ fn ground(scene: &Scene) -> Option<usize> {
     scene.spheres.iter().position(|sphere| sphere.radius == 100.0)
 }
 
+fn change_bubble(picture: &mut Hypothesis, change: fn(&mut Scene, usize)) {
+    let scene = Arc::make_mut(&mut picture.recipe.scene);
+    if let Some(index) = bubble(scene) {
+        change(scene, index);
+    }
+}
+
 fn move_ground(picture: &mut Hypothesis, radius: f64, height: f64) {
     let scene = Arc::make_mut(&mut picture.recipe.scene);
     if let Some(index) = ground(scene) {
@@ -604,6 +596,10 @@ fn has_rays(recipe: &Recipe) -> bool {
     recipe.rules.shading != Shading::ImageGradient
 }
 
+fn has_antialiasing(recipe: &Recipe) -> bool {
+    recipe.rules.antialiasing
+}
+
 fn is_gradient(recipe: &Recipe) -> bool {
     !has_rays(recipe)
 }
@@ -616,6 +612,10 @@ fn has_metal(recipe: &Recipe) -> bool {
     has_material(recipe, |material| matches!(material, Material::Metal { .. }))
 }
 
+fn has_reflecting_glass(recipe: &Recipe) -> bool {
+    has_glass(recipe) && recipe.rules.dielectric != DielectricLaws::RefractOnly
+}
+
 fn has_schlick(recipe: &Recipe) -> bool {
     has_glass(recipe) && recipe.rules.dielectric == DielectricLaws::Schlick
 }
@@ -626,6 +626,10 @@ fn has_spheres(recipe: &Recipe) -> bool {
 
 fn has_bounces(recipe: &Recipe) -> bool {
     recipe.rules.shading == Shading::Path && has_spheres(recipe)
+}
+
+fn has_one_material(recipe: &Recipe) -> bool {
+    has_bounces(recipe) && recipe.scene.materials.len() == 1
 }
 
 fn has_material(recipe: &Recipe, is_so: impl Fn(&Material) -> bool) -> bool {

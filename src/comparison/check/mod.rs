@@ -7,6 +7,7 @@
 mod answer;
 mod hypothesis;
 mod judge;
+mod mask;
 mod mine;
 mod mistakes;
 mod noise;
@@ -18,7 +19,7 @@ mod written;
 pub use crate::job::output::Damage;
 pub use answer::{Answer, AnswerKind, Section};
 pub use hypothesis::{Compared, Hypothesis, Mistake, Studio};
-pub use judge::{Finding, judge, judge_again};
+pub use judge::{Finding, judge};
 pub use mine::Mine;
 pub use mistakes::MISTAKES;
 pub use watch::{POLL_INTERVAL, Watched};
@@ -43,19 +44,14 @@ pub fn run(options: &CheckOptions) -> Result<ExitCode> {
     options.out.iter().try_for_each(|directory| make_directory(directory))?;
     let inputs = options.pictures.iter().map(PathBuf::as_path);
     check_outputs(inputs, files.iter().chain(&options.json).map(PathBuf::as_path))?;
-    let [picture] = options.pictures.as_slice() else {
-        ensure!(
-            options.out.is_none(),
-            "--out is for a single picture, but there are {}",
-            options.pictures.len()
-        );
-        return if options.watch { watch::run(options) } else { each(options) };
-    };
+    let count = options.pictures.len();
+    ensure!(options.out.is_none() || count == 1, "--out is for a single picture, but there are {count}");
     if options.watch {
         return watch::run(options);
     }
+    let [picture] = options.pictures.as_slice() else { return each(options) };
     let mine = Mine::read(picture)?;
-    let finding = judged(&mine, options, None)?;
+    let finding = judged(&mine, options)?;
     for (path, pixels) in files.iter().zip(pictures(&mine, &finding)) {
         let image = RgbImage::from_raw(mine.width, mine.height, pixels.into_iter().flatten().collect());
         let image = image.context("a picture has another size than its pixels")?;
@@ -67,9 +63,9 @@ pub fn run(options: &CheckOptions) -> Result<ExitCode> {
 }
 
 /// Judges a picture and shows what is being tried.
-fn judged(mine: &Mine, options: &CheckOptions, last: Option<&Finding>) -> Result<Finding> {
+fn judged(mine: &Mine, options: &CheckOptions) -> Result<Finding> {
     let mut display = Display::new(options.progress, 1, "{wide_msg}", "", Duration::ZERO);
-    let finding = judge_again(mine, options.stage, last, |what| display.update(0, || what));
+    let finding = judge(mine, options.stage, |what| display.update(0, || what));
     display.clear();
     finding
 }
@@ -79,22 +75,9 @@ fn each(options: &CheckOptions) -> Result<ExitCode> {
     let mut lines = Lines::new(options);
     let mut worst = Verdict::Same;
     for picture in &options.pictures {
-        let judged = Mine::read(picture).and_then(|mine| Ok((judged(&mine, options, None)?, mine)));
-        let verdict = match judged {
-            Ok((finding, mine)) => {
-                lines.add(picture, &mine, &finding)?;
-                finding.answer(&mine).verdict()
-            }
-            Err(reason) => {
-                lines.fail(picture, &reason)?;
-                Verdict::Unclear
-            }
-        };
-        worst = match (worst, verdict) {
-            (Verdict::Different, _) | (_, Verdict::Different) => Verdict::Different,
-            (Verdict::Unclear, _) | (_, Verdict::Unclear) => Verdict::Unclear,
-            _ => Verdict::Same,
-        };
+        let judged =
+            Mine::read(picture).and_then(|mine| judged(&mine, options).map(|finding| (mine, finding)));
+        worst = worst.max(lines.add(picture, &judged)?);
     }
     Ok(worst.exit_code())
 }
@@ -110,7 +93,16 @@ impl<'a> Lines<'a> {
         Lines { json: options.json.as_deref(), written: String::new() }
     }
 
-    fn add(&mut self, path: &Path, mine: &Mine, finding: &Finding) -> Result<()> {
+    fn add(&mut self, path: &Path, judged: &Result<(Mine, Finding)>) -> Result<Verdict> {
+        let (mine, finding) = match judged {
+            Ok(judged) => judged,
+            Err(reason) => {
+                let figures =
+                    json!({ "picture": path.display().to_string(), "error": format!("{reason:#}") });
+                self.say(&format!("{}: {reason:#}\n", path.display()), figures)?;
+                return Ok(Verdict::Unclear);
+            }
+        };
         let answer = finding.answer(mine);
         let rows = if mine.rows < mine.height {
             format!("{} of {} rows, ", mine.rows, mine.height)
@@ -119,12 +111,8 @@ impl<'a> Lines<'a> {
         };
         let section = finding.stage.section;
         let text = format!("{}: {rows}section {section}: {}\n", path.display(), answer.title);
-        self.say(&text, figures(path, mine, finding, &[]))
-    }
-
-    fn fail(&mut self, path: &Path, reason: &anyhow::Error) -> Result<()> {
-        let figures = json!({ "picture": path.display().to_string(), "error": format!("{reason:#}") });
-        self.say(&format!("{}: {reason:#}\n", path.display()), figures)
+        self.say(&text, figures(path, mine, finding, &[]))?;
+        Ok(answer.verdict())
     }
 
     fn say(&mut self, text: &str, mut figures: serde_json::Value) -> Result<()> {

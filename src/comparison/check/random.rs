@@ -2,6 +2,7 @@
 
 use super::Mine;
 use super::hypothesis::{Compared, Hypothesis, Studio};
+use super::mask::{enlarged, grown};
 use super::written::{EQUAL, reduced};
 use crate::job::recipe::Recipe;
 use crate::scene::Scene;
@@ -23,7 +24,7 @@ const CELL: usize = 4;
 /// The recipe of a stage, with the spheres that are the same in every program.
 pub fn common(stage: &Stage) -> Recipe {
     let mut recipe = stage.recipe();
-    if is_random(stage) {
+    if stage.setup.has_random_spheres {
         recipe.scene = Arc::new(large(&recipe.scene));
     }
     recipe
@@ -37,7 +38,7 @@ fn large(scene: &Scene) -> Scene {
 
 /// The picture, without the pixels that depend on where the small spheres of `stage` are.
 pub fn fixed<'a>(mine: &'a Mine, stage: &Stage) -> Result<Cow<'a, Mine>> {
-    if !is_random(stage) {
+    if !stage.setup.has_random_spheres {
         return Ok(Cow::Borrowed(mine));
     }
     let [width, height] = [mine.width as usize, mine.height as usize];
@@ -61,13 +62,8 @@ pub fn fixed<'a>(mine: &'a Mine, stage: &Stage) -> Result<Cow<'a, Mine>> {
     let depends: Vec<bool> =
         (0..columns * rows).map(|cell| (0..3).any(|channel| spread(cell, channel) > EQUAL)).collect();
     // The neighbours of a dependent cell may depend in yet another scene.
-    let is_ignored = |pixel: usize| {
-        let (x, y) = ((pixel % width / CELL).min(columns - 1), (pixel / width / CELL).min(rows - 1));
-        let near = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
-        near(y, rows).any(|y| near(x, columns).any(|x| depends[y * columns + x]))
-    };
-    let ignored = (0..width * height).map(is_ignored).collect();
-    Ok(Cow::Owned(Mine { ignored: Some(ignored), ..mine.clone() }))
+    let ignored = enlarged(&grown(&depends, [columns, rows]), [width, height], CELL);
+    Ok(Cow::Owned(Mine { ignored: Some(ignored.into()), ..mine.clone() }))
 }
 
 /// Fills the pixels of our picture that are not compared, from a scene with small spheres.
@@ -80,9 +76,4 @@ pub fn complete(ours: &mut Compared, ignored: Option<&[bool]>, stage: &Stage) ->
         pixels.filter(|(_, is_ignored)| **is_ignored).for_each(|((pixel, whole), _)| *pixel = whole);
     }
     Ok(())
-}
-
-/// Whether a stage's small spheres are placed at random.
-pub fn is_random(stage: &Stage) -> bool {
-    stage.is_in_book() && stage.next().is_none()
 }

@@ -34,25 +34,19 @@ pub struct Watched {
     seen: (Stamp, Instant),
     is_told: bool,
     rows: u32,
-    last: Option<Finding>,
 }
 
 impl Watched {
     pub fn new(path: &Path) -> Self {
-        Watched { path: path.to_owned(), seen: (None, Instant::now()), is_told: false, rows: 0, last: None }
+        Watched { path: path.to_owned(), seen: (None, Instant::now()), is_told: false, rows: 0 }
     }
 
-    /// The picture and the finding of `judge`; `None` if nothing is new. `judge` receives the previous finding. Call it
-    /// every [`POLL_INTERVAL`].
+    /// The picture and the finding of `judge`; `None` if nothing is new. Call it every [`POLL_INTERVAL`].
     pub fn judged(
         &mut self,
-        judge: impl FnOnce(&Mine, Option<&Finding>) -> Result<Finding>,
+        judge: impl FnOnce(&Mine) -> Result<Finding>,
     ) -> Option<Result<(Mine, Finding)>> {
-        let found = self.look()?.and_then(|mine| Ok((judge(&mine, self.last.as_ref())?, mine)));
-        Some(found.map(|(finding, mine)| {
-            self.last = Some(finding.clone());
-            (mine, finding)
-        }))
+        Some(self.look()?.and_then(|mine| judge(&mine).map(|finding| (mine, finding))))
     }
 
     /// The changed picture, possibly with only some of its rows, or why it cannot be read; `None` if nothing is new.
@@ -105,10 +99,8 @@ pub(super) fn run(options: &CheckOptions) -> Result<ExitCode> {
     let mut watched: Vec<Watched> = options.pictures.iter().map(|path| Watched::new(path)).collect();
     while !interrupt.is_set() {
         for watched in &mut watched {
-            match watched.judged(|mine, last| judged(mine, options, last)) {
-                Some(Ok((mine, finding))) => lines.add(&watched.path, &mine, &finding)?,
-                Some(Err(reason)) => lines.fail(&watched.path, &reason)?,
-                None => {}
+            if let Some(judged) = watched.judged(|mine| judged(mine, options)) {
+                lines.add(&watched.path, &judged)?;
             }
         }
         sleep(POLL_INTERVAL);

@@ -18,8 +18,6 @@ pub struct Written {
     pub rounds: bool,
     /// Whether 256 becomes 0 instead of 255.
     pub wraps: bool,
-    /// Whether displayed values are truncated to whole numbers before they are scaled.
-    pub truncates: bool,
 }
 
 /// The order of the numbers in a file.
@@ -146,9 +144,6 @@ impl Seen {
     }
 }
 
-/// If values are truncated before they are scaled, linear values in this range may have become 0 or 1.
-const NEARLY_WHITE: [f64; 2] = [0.9, 0.9995];
-
 impl Written {
     pub fn right(recipe: &Recipe) -> Written {
         Written {
@@ -158,7 +153,6 @@ impl Written {
             levels: 256.0,
             rounds: false,
             wraps: false,
-            truncates: false,
         }
     }
 
@@ -172,7 +166,6 @@ impl Written {
 
     pub fn byte_of(&self, linear: f64, row: usize, height: usize) -> u8 {
         let displayed = self.curve.displayed(linear.max(0.0), row, height);
-        let displayed = if self.truncates { (displayed + 1e-4).floor() } else { displayed };
         (self.levels * displayed.min(0.999) + if self.rounds { 0.5 } else { 0.0 }) as u8
     }
 
@@ -193,13 +186,7 @@ impl Written {
         let rows = linear.chunks(width.max(1)).enumerate();
         rows.flat_map(|(row, pixels)| {
             let [least, most] = [0, 255].map(|byte| self.linear(byte, row, height)[0]);
-            let of = move |x: f64| match x {
-                _ if !self.truncates => x.clamp(least, most),
-                _ if x < NEARLY_WHITE[0] => least,
-                _ if x > NEARLY_WHITE[1] => most,
-                _ => f64::NAN,
-            };
-            pixels.iter().map(move |pixel| pixel.map(of))
+            pixels.iter().map(move |pixel| pixel.map(|x| x.clamp(least, most)))
         })
         .collect()
     }

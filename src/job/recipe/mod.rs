@@ -101,8 +101,7 @@ pub fn plain_name(name: &str) -> String {
 impl Stage {
     /// The picture that shows this stage.
     pub fn recipe(&self) -> Recipe {
-        let Setup { scene, camera, rules, width, height, samples_per_pixel, max_depth, is_in_book: _ } =
-            self.setup;
+        let Setup { scene, camera, rules, width, height, samples_per_pixel, max_depth, .. } = self.setup;
         Recipe {
             name: self.id.to_owned(),
             scene: Arc::new(scene()),

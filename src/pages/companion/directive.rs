@@ -10,7 +10,7 @@ use super::site::Site;
 use super::timeline;
 use super::uses::Uses;
 use super::words::{numbered, typographic};
-use crate::pages::gallery::{Figure, is_about_pixels};
+use crate::pages::gallery::{Figure, has_few_pixels};
 use crate::stages::Stage;
 use crate::system::suggest::similar_names;
 use anyhow::{Context, Error, Result, bail};
@@ -69,7 +69,7 @@ pub fn panel(stage: &Stage, label: Option<&str>, crop: Option<[f64; 4]>, small: 
         (format!("figures/{}.png", stage.id), [stage.setup.width, stage.setup.height]);
     html! {
         div .panel data-stage=(stage.id) {
-            div .live-frame { img .pixels[is_about_pixels(stage)] src=(file) width=(width) height=(height) alt=(stage.alt)
+            div .live-frame { img .pixels[has_few_pixels(stage)] src=(file) width=(width) height=(height) alt=(stage.alt)
                 loading=[small.is_none().then_some("lazy")] fetchpriority=[small.map(|_| "high")]
                 srcset=[small.map(|small| format!("{}, {file} {width}w", small.candidate()))]
                 sizes=[small.map(|_| "(max-width: 40rem) 14rem, 70rem")]; }

@@ -304,11 +304,7 @@ fn digits(number: f64, count: i32) -> String {
         return format!("{number:.0$}", places as usize);
     }
     let unit = 10_f64.powi(-places);
-    let mut whole = format!("{:.0}", (number / unit).round() * unit);
-    for place in (1..whole.len()).rev().skip(2).step_by(3) {
-        whole.insert(place, ',');
-    }
-    whole
+    measure::grouped(((number / unit).round() * unit) as u64)
 }
 
 #[cfg(test)]

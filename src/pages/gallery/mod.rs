@@ -6,7 +6,7 @@ mod rendering;
 mod still;
 
 pub use rendering::{Order, Outcome, Work};
-pub use still::is_about_pixels;
+pub use still::has_few_pixels;
 
 use crate::cli::GalleryOptions;
 use crate::stages::Stage;

@@ -1,6 +1,6 @@
 //! `index.html`: the figures with captions, by chapter. It needs no server, script or network.
 
-use super::still::{Stills, file_name, is_about_pixels};
+use super::still::{Stills, file_name, has_few_pixels};
 use super::{Figure, Panel};
 use crate::stages::{BOOK_URL, Stage};
 use crate::system::files::GENERATOR;
@@ -88,7 +88,7 @@ fn shown(figure: &Figure, stills: &Stills) -> Markup {
 fn shown_panel(panel: &Panel, is_labelled: bool, stills: &Stills) -> Markup {
     let stage = panel.stage();
     html! {
-        div .panel .pixels[is_about_pixels(stage)] data-stage=(stage.id) {
+        div .panel .pixels[has_few_pixels(stage)] data-stage=(stage.id) {
             @match stills.get(stage.id) {
                 Some(still) => {
                     @let file = file_name(stage);

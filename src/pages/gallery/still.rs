@@ -21,9 +21,6 @@ const FULL_WIDTH: u32 = 800;
 /// Samples per pixel of a full still. The estimated error is then at most 0.003, about half an 8-bit step.
 const FULL_SAMPLES: u64 = 1024;
 
-/// Stages about single pixels, whose size and samples must not change.
-const PIXELS: [&str; 3] = ["ppm-tiny", "aliased", "antialiased"];
-
 /// Stills narrower than this are enlarged.
 const FEW_PIXELS: u32 = 100;
 
@@ -32,14 +29,14 @@ pub(super) const NO_NOISE: &str = "no noise";
 
 /// Whether a still of the stage must be enlarged with every pixel a square. (A reduced still must not be shown so: its
 /// edges would become jagged.)
-pub fn is_about_pixels(stage: &Stage) -> bool {
+pub fn has_few_pixels(stage: &Stage) -> bool {
     stage.setup.width < FEW_PIXELS
 }
 
 /// The stage's own recipe with the size and samples of a still.
 pub(super) fn recipe(stage: &Stage, is_quick: bool) -> Recipe {
     let mut recipe = stage.recipe();
-    if PIXELS.contains(&stage.id) {
+    if stage.setup.is_about_pixels {
         return recipe;
     }
     let (settings, samples) = (&mut recipe.settings, &mut recipe.samples_per_pixel);
@@ -170,7 +167,7 @@ mod tests {
                     .map(|settings| f64::from(settings.width) / f64::from(settings.height));
                 assert!((shape / own_shape - 1.0).abs() < 0.01, "{}: {shape}", stage.id);
                 assert_eq!(recipe.samples_per_pixel == 1, own.samples_per_pixel == 1, "{}", stage.id);
-                if PIXELS.contains(&stage.id) {
+                if stage.setup.is_about_pixels {
                     assert_eq!(recipe, own);
                 }
             }

@@ -23,7 +23,8 @@ use std::time::Duration;
 /// Estimating the error may take at most one in this many parts of the time.
 const ERROR_ESTIMATE_SHARE: u32 = 20;
 
-/// Flags that end a long call of a renderer early, set by the handle.
+/// Flags that end a long call of a renderer early, set by the handle. They are two because a [`Control`] lends a renderer
+/// each alone: while it prepares and in the first pass, a stop cancels; later it must not.
 #[derive(Default)]
 pub struct Cancel {
     /// Ends a pass, which spoils the film.

@@ -55,7 +55,7 @@ pub(super) const STAGES: &[Stage] = &[
         alt: "A gradient of 16 by 9 large pixels: black at the top left, red at the top right, green at \
               the bottom left, yellow at the bottom right.",
         pair: None,
-        setup: Setup { rules: IMAGE_GRADIENT, width: 16, height: 9, ..ONE_RAY },
+        setup: Setup { rules: IMAGE_GRADIENT, width: 16, height: 9, is_about_pixels: true, ..ONE_RAY },
     },
     Stage {
         id: "ppm-gradient",
@@ -182,6 +182,7 @@ pub(super) const STAGES: &[Stage] = &[
         setup: Setup {
             scene: matte_on_ground,
             rules: Rules { antialiasing: false, ..NORMAL_COLOURS },
+            is_about_pixels: true,
             ..ONE_RAY
         },
     },
@@ -201,7 +202,13 @@ pub(super) const STAGES: &[Stage] = &[
         },
         alt: "The same ball with a smooth outline and a smooth horizon.",
         pair: Some("aliased"),
-        setup: Setup { rules: NORMAL_COLOURS, samples_per_pixel: 64, max_depth: 1, ..PATHS },
+        setup: Setup {
+            rules: NORMAL_COLOURS,
+            samples_per_pixel: 64,
+            max_depth: 1,
+            is_about_pixels: true,
+            ..PATHS
+        },
     },
     // Chapter 9: diffuse surfaces, and pictures for a display.
     Stage {
@@ -601,12 +608,11 @@ pub(super) const STAGES: &[Stage] = &[
         setup: Setup {
             scene: book,
             camera: BOOK_CAMERA,
-            rules: Rules::FINISHED,
             width: 1200,
             height: 675,
             samples_per_pixel: 500,
-            max_depth: 50,
-            is_in_book: true,
+            has_random_spheres: true,
+            ..PATHS
         },
     },
 ];

@@ -16,6 +16,8 @@ pub(super) const ONE_RAY: Setup = Setup {
     samples_per_pixel: 1,
     max_depth: 1,
     is_in_book: true,
+    is_about_pixels: false,
+    has_random_spheres: false,
 };
 
 /// Paths with as many rays as the book allows. The number of samples is a power of two, at which Sobol points are most
@@ -29,6 +31,8 @@ pub(super) const PATHS: Setup = Setup {
     samples_per_pixel: 128,
     max_depth: 50,
     is_in_book: true,
+    is_about_pixels: false,
+    has_random_spheres: false,
 };
 
 pub(super) const THREE_BALLS: Setup = Setup { scene: || three_spheres(LeftSphere::HollowGlass), ..PATHS };
