@@ -129,7 +129,7 @@ impl Columns {
             }
             _ => Err(format!(
                 "the first line of a table of spheres is {header:?}, but must name its columns: x,y,z,radius and either \
-                 material or red,green,blue, each once and no others"
+                 material or red,green,blue, each once, separated by commas, and no others"
             )),
         }
     }
