@@ -96,24 +96,36 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
         let is_opening = journal::expect_panics(false);
         let outcome = match outcome {
             Ok(outcome) => outcome,
-            Err(panic) if is_opening => bail!(
-                "the display {} cannot open a window: {}; use another display, or {REMEDY}",
-                display(),
-                panic_text(panic.as_ref())
-            ),
+            Err(panic) if is_opening => {
+                let reason = panic_text(panic.as_ref());
+                check_libraries(reason)?;
+                bail!(
+                    "the display {} cannot open a window: {reason}; use another display, or {REMEDY}",
+                    display()
+                )
+            }
             Err(panic) => resume_unwind(panic),
         };
         match outcome {
             Ok(()) if interrupt.is_set() => return Ok(interrupt.exit_code()),
             Ok(()) => return Ok(ExitCode::SUCCESS),
             // The window system's own message names places in its source code, and another renderer would not help.
-            Err(eframe::Error::WinitEventLoop(_)) => {
+            Err(eframe::Error::WinitEventLoop(error)) => {
+                check_libraries(&format!("{error:?}"))?;
                 bail!("the display {} does not answer; {REMEDY}", display())
             }
             Err(error) => failures.push(format!("with {renderer}: {error}")),
         }
     }
     Err(anyhow!("the window cannot be opened; {}; {REMEDY}", failures.join("; ")))
+}
+
+/// Refuses if a message of the window system names a library, which it then could not load.
+fn check_libraries(message: &str) -> Result<()> {
+    let mut words = message.split(|c: char| !c.is_alphanumeric() && !"-_.".contains(c));
+    words.find(|word| word.starts_with("lib") && word.contains(".so")).map_or(Ok(()), |library| {
+        Err(anyhow!("a window needs {library}, which cannot be loaded; install it, or {REMEDY}"))
+    })
 }
 
 /// Moves the window to a monitor if it was last on one that is gone.

@@ -44,7 +44,8 @@ impl Files {
     /// # Errors
     /// [`Failure::Input`] if another run writes one of them.
     pub fn lock(render: &BatchOptions) -> Result<Files, Failure> {
-        let out = Some(&render.out).filter(|out| is_film(out) && Some(*out) != render.checkpoint.as_ref());
+        let out = render.out.iter().map(|(out, _)| out);
+        let out = out.filter(|out| is_film(out) && Some(*out) != render.checkpoint.as_ref());
         let locked = |path: &PathBuf| Ok((path.clone(), Mutex::new(LockedFilm::new(path)?)));
         let films = render.checkpoint.iter().chain(out).map(locked).collect::<Result<_, LockedError>>();
         Ok(Files {
@@ -113,7 +114,7 @@ impl Files {
         })
     }
 
-    /// Writes the films and the picture, calling `say` before each. A failed write does not stop the others. If no film
+    /// Writes the films and the pictures, calling `say` before each. A failed write does not stop the others. If no film
     /// could be written, it is saved elsewhere, since its samples may have taken hours. If the film cannot be denoised as
     /// requested, the picture is that of the film, and a note says so.
     pub fn write(&self, film: &Film, status: &Status, mut say: impl FnMut(&Path)) -> Written {
@@ -130,7 +131,7 @@ impl Files {
         let picture = denoised.as_ref().map(|denoised| &denoised.film);
         for place in &self.films {
             say(&place.0);
-            match self.save(place, film, picture.filter(|_| place.0 == render.out), status) {
+            match self.save(place, film, picture.filter(|_| render.writes(&place.0)), status) {
                 Ok(note) => {
                     written.files.push(place.0.clone());
                     written.notes.extend(note);
@@ -140,37 +141,34 @@ impl Files {
         }
         let is_film_kept = !written.files.is_empty();
         let mut description = self.described(film, status);
-        if !is_film(&render.out) {
+        for (out, format) in render.out.iter().filter(|(out, _)| !is_film(out)) {
             if let Some(error) = &written.denoised {
                 description.set(key::DENOISED, error.words());
             }
-            say(&render.out);
+            say(out);
             let transfer = render.job.rules().transfer;
-            let write = || match render.format {
-                OutputFormat::Exr => {
-                    checkpoint::save_with(&render.out, film, picture, &self.described(film, status))
-                        .map_err(|error| error.to_string())
-                }
-                format => {
-                    write_image_as(&render.out, format, picture.unwrap_or(film), transfer, &description)
-                        .map_err(|error| error.to_string())
-                }
+            let write = || match *format {
+                OutputFormat::Exr => checkpoint::save_with(out, film, picture, &self.described(film, status))
+                    .map_err(|error| error.to_string()),
+                format => write_image_as(out, format, picture.unwrap_or(film), transfer, &description)
+                    .map_err(|error| error.to_string()),
             };
-            match caught(&render.out, write) {
-                Ok(()) => written.files.push(render.out.clone()),
+            match caught(out, write) {
+                Ok(()) => written.files.push(out.clone()),
                 Err(reason) => written.failures.push(reason),
             }
         }
         if !written.failures.is_empty() && !is_film_kept {
             match rescue(&directories(render), &render.recipe.name, film, &description) {
                 Ok(path) => {
-                    let (rescued, out) = (path.shown(), render.out.shown());
-                    written.failures.push(match render.checkpoint.as_ref() == Some(&render.out) {
-                        true => format!(
-                            "the samples were saved in {rescued}; once {out} can be written, move the film there and run \
-                             the same command again"
+                    let rescued = path.shown();
+                    written.failures.push(match render.checkpoint.as_ref().filter(|film| render.writes(film)) {
+                        Some(film) => format!(
+                            "the samples were saved in {rescued}; once {} can be written, move the film there and run the \
+                             same command again",
+                            film.shown()
                         ),
-                        false => {
+                        None => {
                             format!("the samples were saved in {rescued}; continue with --resume {rescued}")
                         }
                     });
@@ -201,12 +199,11 @@ fn caught<T>(path: &Path, write: impl FnOnce() -> Result<T, String>) -> Result<T
 
 /// The directories of the files that the render writes.
 fn directories(render: &BatchOptions) -> Vec<PathBuf> {
-    let files = [Some(&render.out), render.checkpoint.as_ref()];
     let directory = |path: &PathBuf| match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
         _ => PathBuf::from("."),
     };
-    files.into_iter().flatten().map(directory).collect()
+    render.files().map(directory).collect()
 }
 
 pub(super) fn is_film(path: &Path) -> bool {

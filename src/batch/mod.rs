@@ -54,7 +54,7 @@ fn render(options: &BatchOptions, mut files: Files, resumed: Option<SavedFilm>) 
     if let Some(path) = &options.save_scene {
         write_text(path, &file::to_toml(&options.recipe)).map_err(Failure::run)?;
     }
-    let has_stdout = options.out == Path::new(STANDARD);
+    let has_stdout = options.writes(Path::new(STANDARD));
     let beside = if has_stdout { Some(Path::new(STANDARD)) } else { options.json.as_deref() };
     let film = resumed.map(|saved| saved.film);
     let (summary, outcome) = picture::render(options, files, film, &warnings, &mut studio, &interrupt);
@@ -97,9 +97,7 @@ pub fn save_scene(recipe: &Recipe, path: &Path) -> Result<ExitCode, Failure> {
 
 /// Checks everything that could otherwise fail after rendering.
 fn check_before(options: &BatchOptions) -> Result<(), Failure> {
-    let BatchOptions { out, checkpoint, save_scene, json, .. } = options;
-    let files = [Some(out), checkpoint.as_ref(), save_scene.as_ref()].into_iter().flatten();
-    for path in files.chain(json) {
+    for path in options.files().chain(&options.save_scene).chain(&options.json) {
         let check = if files::is_film(path) { check_replaceable } else { check_writable };
         check(path).map_err(Failure::input)?;
     }

@@ -41,8 +41,7 @@ fn render_samples(plan: &Plan, index: usize, options: PartOptions) -> Result<Exi
         stage: plan.stage(),
         plan: progressive::Plan { first_sample: start, ..super::Studio::plan(end) },
         denoise: false,
-        out: path.clone(),
-        format: OutputFormat::Exr,
+        out: vec![(path.clone(), OutputFormat::Exr)],
         checkpoint: Some(path.clone()),
         every: options.every,
         resume: Some(path.clone()),
@@ -77,7 +76,7 @@ fn summary_of_whole<'a>(render: &'a BatchOptions, found: &SavedFilm) -> Summary<
         ..Status::default()
     };
     let samples = Some(film.samples().to_string());
-    let files = vec![render.out.clone()];
+    let files = render.files().cloned().collect();
     Summary { render, samples, status, denoised: None, files, writing: Duration::ZERO }
 }
 

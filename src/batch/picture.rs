@@ -51,8 +51,7 @@ pub(super) fn render<'a>(
                 show(&mut display, &render.plan, status, begin.elapsed());
             }
         });
-    let mut names = vec![render.out.shown()];
-    names.extend(render.checkpoint.as_ref().filter(|path| **path != render.out).map(ShownPath::shown));
+    let names: Vec<String> = render.files().map(ShownPath::shown).collect();
     let writing = interrupt.while_writing(names.join(" and "));
     let begin = Instant::now();
     let kept = keeper.and_then(Keeper::finish);

@@ -72,16 +72,17 @@ pub(super) fn frames(flags: RenderFlags) -> Result<FramesOptions> {
             bail!("--turntable in degrees needs --frames A..B: a turn may not be a whole number of frames")
         }
     };
-    let Some(out) = flags.files.out.as_deref().filter(|_| flags.batch) else {
+    let [out] = flags.files.out.as_slice() else {
         bail!(
-            "an animation needs --batch and --out: it writes many pictures; name a directory, or a pattern such as \
+            "an animation needs --batch and one --out: it writes many pictures; name a directory, or a pattern such as \
              turn-####.png"
         );
     };
     let names = names(out)?;
     let files: Vec<PathBuf> = frames.clone().map(|frame| names.path(frame)).collect();
     let outputs = files.iter().chain(&flags.files.json).map(PathBuf::as_path);
-    check_paths(sources::scene_file(flags.picture.scene.as_deref()), outputs)?;
+    let scene = sources::inputs(flags.picture.scene.as_deref());
+    check_paths(scene.iter().map(PathBuf::as_path), outputs)?;
     let options = FramesOptions {
         recipe: chosen.recipe,
         job,

@@ -84,8 +84,9 @@ impl BenchOptions {
     /// # Errors
     /// If not.
     pub fn check(&self) -> Result<()> {
-        let inputs = self.scene.iter().filter_map(|scene| sources::scene_file(Some(scene.as_ref())));
-        check_outputs(inputs, self.json.as_deref())
+        let inputs: Vec<PathBuf> =
+            self.scene.iter().flat_map(|scene| sources::inputs(Some(scene.as_ref()))).collect();
+        check_outputs(inputs.iter().map(PathBuf::as_path), self.json.as_deref())
     }
 
     /// Instruction levels, the most capable last; at least one.

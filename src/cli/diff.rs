@@ -50,7 +50,8 @@ impl DiffOptions {
     /// # Errors
     /// If not.
     pub fn check(&self) -> Result<()> {
-        super::check_outputs(sources::scene_file(self.picture.scene.as_deref()), self.json.as_deref())
+        let scene = sources::inputs(self.picture.scene.as_deref());
+        super::check_outputs(scene.iter().map(PathBuf::as_path), self.json.as_deref())
     }
 
     /// The job, small for a search unless a size is given, and the name of its scene or stage.

@@ -100,9 +100,9 @@ impl AnimationFlags {
 #[command(next_help_heading = "Files")]
 pub(super) struct FileFlags {
     /// The picture: .png, .ppm, .exr (linear film) or .pfm (linear), or - for standard output; with --frames, a
-    /// directory or a pattern such as turn-####.png [default: SCENE.png]
+    /// directory or a pattern such as turn-####.png; may be repeated [default: SCENE.png]
     #[arg(long, value_name = "FILE", requires = "batch")]
-    pub out: Option<PathBuf>,
+    pub out: Vec<PathBuf>,
     /// The format of --out, if its extension does not tell
     #[arg(long, value_enum, requires = "out", conflicts_with = "AnimationFlags")]
     format: Option<OutputFormat>,
@@ -184,9 +184,8 @@ pub struct BatchOptions {
     pub plan: Plan,
     /// Whether the picture is denoised.
     pub denoise: bool,
-    /// File of the picture.
-    pub out: PathBuf,
-    pub format: OutputFormat,
+    /// Files of the picture.
+    pub out: Vec<(PathBuf, OutputFormat)>,
     /// File of the film, if it is kept.
     pub checkpoint: Option<PathBuf>,
     /// Interval at which the film is written.
@@ -200,6 +199,19 @@ pub struct BatchOptions {
     pub json: Option<PathBuf>,
     /// Samples per pixel at which the program panics (fault injection).
     pub crashes_at: Option<u64>,
+}
+
+impl BatchOptions {
+    /// Whether `--out` names this file.
+    pub fn writes(&self, path: &Path) -> bool {
+        self.out.iter().any(|(out, _)| out == path)
+    }
+
+    /// The files of the picture and of its film.
+    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        let film = self.checkpoint.iter().filter(|film| !self.writes(film));
+        self.out.iter().map(|(out, _)| out).chain(film)
+    }
 }
 
 /// Validates the flags without a subcommand.
@@ -224,7 +236,7 @@ pub(super) fn request(mut flags: RenderFlags, matches: &ArgMatches) -> Result<Re
             Ok(Request::Window(Box::new(WindowOptions { mine, ..options })))
         }
         (false, Some(path)) => {
-            check_paths(&flags, None)?;
+            check_paths(&flags, &[])?;
             let saved = flags.files.resume.as_deref().or(picture.as_deref());
             let (chosen, _) = sources::picture(&flags.picture, &flags.samples, saved)?;
             Ok(Request::SaveScene(Box::new(chosen.recipe), path.clone()))
@@ -252,8 +264,9 @@ fn window(flags: RenderFlags, opened: Option<&Path>, matches: &ArgMatches) -> Re
         "--sample-range needs --batch: the window renders all samples of its picture"
     );
     let file = sources::scene_file(picture.scene.as_deref());
-    let unchanged = sources::find(picture, saved)?.recipe;
-    let (ChosenRecipe { recipe, stage }, job) = sources::picture(picture, samples, saved)?;
+    let chosen = sources::find(picture, saved)?;
+    let unchanged = chosen.recipe.clone();
+    let (ChosenRecipe { recipe, stage }, job) = sources::changed(chosen, picture, samples)?;
     if let Some(film) = &files.resume {
         saved::check_resume(film, &job)?;
     }
@@ -284,21 +297,25 @@ fn batch(flags: RenderFlags) -> Result<BatchOptions> {
     let RenderFlags { picture, samples, files, .. } = &flags;
     let (ChosenRecipe { recipe, stage }, job) = sources::picture(picture, samples, files.resume.as_deref())?;
     let name = stage.map_or(recipe.name.as_str(), |stage| stage.id);
-    let out = files.out.clone().unwrap_or_else(|| format!("{}.png", plain_name(name)).into());
-    check_paths(&flags, Some(&out))?;
-    let named = OutputFormat::from_path(&out);
-    let format = match (files.format, named) {
+    let mut out = files.out.clone();
+    if out.is_empty() {
+        out.push(format!("{}.png", plain_name(name)).into());
+    }
+    check_paths(&flags, &out)?;
+    let with_format = |out: PathBuf| match (files.format, OutputFormat::from_path(&out)) {
         (Some(format), Ok(named)) if format != named => bail!(
             "--format {} contradicts the name {}; leave one of them out",
             &format.ending()[1..],
             out.shown()
         ),
-        (Some(format), _) => format,
-        (None, named) => named?,
+        (Some(format), _) => Ok((out, format)),
+        (None, named) => Ok((out, named?)),
     };
+    let out = out.into_iter().map(with_format).collect::<Result<Vec<_>>>()?;
+    let to_standard = out.iter().map(|(out, _)| out).chain(&files.json);
     ensure!(
-        out != Path::new(STANDARD) || files.json.as_ref() != Some(&out),
-        "--out - and --json - would both write to standard output; write one of them to a file"
+        to_standard.filter(|path| *path == Path::new(STANDARD)).count() <= 1,
+        "two of --out and --json would both write to standard output; write one of them to a file"
     );
     let comparing = [("--noise-target", flags.stop.noise_target.is_some()), ("--denoise", files.denoise)];
     if let Some((flag, _)) = comparing.into_iter().find(|(_, is_given)| *is_given)
@@ -313,7 +330,6 @@ fn batch(flags: RenderFlags) -> Result<BatchOptions> {
         job,
         stage,
         out,
-        format,
         checkpoint: flags.files.checkpoint,
         every: flags.files.every,
         resume: flags.files.resume,
@@ -326,13 +342,16 @@ fn batch(flags: RenderFlags) -> Result<BatchOptions> {
 }
 
 /// Refuses outputs that would replace each other or an input.
-fn check_paths(flags: &RenderFlags, out: Option<&Path>) -> Result<()> {
+fn check_paths(flags: &RenderFlags, out: &[PathBuf]) -> Result<()> {
     let files = &flags.files;
-    let scene = sources::scene_file(flags.picture.scene.as_deref());
+    let scene = sources::inputs(flags.picture.scene.as_deref());
     let others = [files.save_scene.as_deref(), files.json.as_deref()].into_iter().flatten();
     // A film may be replaced by its own continuation.
     super::check_paths(files.resume.as_deref(), others.clone())?;
-    super::check_paths(scene, [files.checkpoint.as_deref(), out].into_iter().flatten().chain(others))
+    super::check_paths(
+        scene.iter().map(PathBuf::as_path),
+        files.checkpoint.iter().chain(out).map(PathBuf::as_path).chain(others),
+    )
 }
 
 fn plan(flags: &RenderFlags, recipe: &Recipe) -> Plan {
@@ -378,7 +397,10 @@ mod tests {
     #[test]
     fn files_and_intervals_have_defaults() {
         let options = render("--stage metal --checkpoint no-such.exr");
-        assert_eq!((options.out.as_path(), options.every), (Path::new("metal.png"), Duration::from_secs(60)));
+        assert_eq!(
+            (&options.out, options.every),
+            (&vec![("metal.png".into(), OutputFormat::Png)], Duration::from_secs(60))
+        );
         let options = render("--scene field:9 --checkpoint no-such.exr --every 5m");
         assert_eq!(options.every, Duration::from_secs(300));
     }

@@ -13,7 +13,7 @@ use clap::{Args, ValueHint};
 use glam::DVec3;
 use std::ffi::{OsStr, OsString};
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The default scene.
 const DEFAULT_SCENE: &str = "three-spheres";
@@ -131,7 +131,15 @@ pub(super) fn picture(
     samples: &SampleFlags,
     saved: Option<&Path>,
 ) -> Result<(ChosenRecipe, RenderJob)> {
-    let mut chosen = find(flags, saved)?;
+    changed(find(flags, saved)?, flags, samples)
+}
+
+/// The recipe with the changes of the flags, and its validated job.
+pub(super) fn changed(
+    mut chosen: ChosenRecipe,
+    flags: &PictureFlags,
+    samples: &SampleFlags,
+) -> Result<(ChosenRecipe, RenderJob)> {
     flags.change(&mut chosen.recipe, samples.estimate_error);
     chosen.recipe.samples_per_pixel = samples.samples.unwrap_or(chosen.recipe.samples_per_pixel);
     let job = chosen.recipe.job()?;
@@ -167,6 +175,11 @@ pub(super) fn scene_file(scene: Option<&OsStr>) -> Option<&Path> {
     let path = Path::new(scene?);
     (path == Path::new(STANDARD) || path.extension().is_some() || path.components().count() > 1)
         .then_some(path)
+}
+
+/// The files that `--scene` names, which no output may replace.
+pub(super) fn inputs(scene: Option<&OsStr>) -> Vec<PathBuf> {
+    scene_file(scene).map(file::inputs).unwrap_or_default()
 }
 
 /// Makes a picture `width` pixels wide, keeping its shape.

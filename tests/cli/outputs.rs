@@ -55,6 +55,10 @@ fn outputs_never_replace_inputs_or_each_other() {
     refused(&["--out", "x.exr", "--checkpoint", "./x.exr"], &["x.exr", "its own name"]);
     refused(&["--resume", "g.exr", "--json", "./g.exr"], &["g.exr"]);
     refused(&["--scene", "s.toml", "--save-scene", "./s.toml"], &["s.toml"]);
+    std::fs::write(path("t.csv"), "x,y,z,radius,red,green,blue\n").unwrap();
+    let camera = "[camera]\nlook_from = [0, 0, 3]\nlook_at = [0, 0, 0]\nvfov_degrees = 40\n";
+    std::fs::write(path("t.toml"), format!("spheres = \"t.csv\"\n{camera}")).unwrap();
+    refused(&["--scene", "t.toml", "--json", "./t.csv"], &["t.csv would replace"]);
     let frames = ["--turntable=3", "--out", "fr", "--json", "fr/frame-0001.png"];
     std::fs::create_dir(path("fr")).unwrap();
     refused(&frames, &["fr/frame-0001.png"]);
@@ -82,6 +86,21 @@ fn outputs_never_replace_files_of_a_plan() {
         refused_in(&directory, &["render-part", "q", "--part", "0", "--json", name], &[name]);
     }
     refused_in(&directory, &["merge", "q", "--out", "q/part-0.exr"], &["q/part-0.exr"]);
+}
+
+#[test]
+fn a_render_writes_all_its_outputs() {
+    let directory = temp();
+    let out = ["a.png", "b.exr", "c.ppm", "d.exr"].map(|name| ["--out", name]).concat();
+    render(directory.path(), &[&["--samples", "2", "--denoise"][..], &out].concat());
+    let [film, other] = ["b.exr", "d.exr"].map(|name| film(&directory.path().join(name)));
+    assert!(film.sample_count() == 2 && film == other);
+    for name in ["a.png", "c.ppm"] {
+        assert!(directory.path().join(name).is_file(), "{name}");
+    }
+    refused_in(&directory, &["--batch", "--out", "a.png", "--out", "./a.png"], &["a.png", "its own name"]);
+    refused_in(&directory, &["--batch", "--out", "-", "--format", "png", "--out", "-"], &["standard output"]);
+    refused_in(&directory, &["--batch", "--turntable", "--out", "a", "--out", "b"], &["one --out"]);
 }
 
 #[test]

@@ -5,3 +5,4 @@ mod random;
 mod reading;
 mod refused;
 mod round_trip;
+mod tables;

@@ -4,7 +4,7 @@ use crate::app::model::{Origin, Source, stamp_of};
 use crate::app::toolkit::Answers;
 use crate::job::recipe::{Recipe, file};
 use eframe::egui::Context;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Weak};
 use std::thread;
 use std::time::Duration;
@@ -44,14 +44,18 @@ impl SceneFile {
     }
 }
 
-/// Reports each change of the file once it has settled.
+/// Reports each change of the file, or of the table of spheres that it names, once it has settled.
 fn look_repeatedly(path: &Path, needed: &Weak<()>, report: impl Fn(&Path)) {
-    let (mut known, mut last) = (stamp_of(path), stamp_of(path));
+    let stamps = |inputs: &[PathBuf]| inputs.iter().map(|path| stamp_of(path)).collect::<Vec<_>>();
+    let mut inputs = file::inputs(path);
+    let mut known = stamps(&inputs);
+    let mut last = known.clone();
     while needed.strong_count() > 0 {
         thread::sleep(LOOKS_APART);
-        let now = stamp_of(path);
-        if now == last && now != known && now.is_some() {
-            known.clone_from(&now);
+        let now = stamps(&inputs);
+        if now == last && now != known && now[0].is_some() {
+            inputs = file::inputs(path);
+            known = stamps(&inputs);
             report(path);
         }
         last = now;

@@ -20,13 +20,22 @@
 //! table. Instead of `[sky]`, `[materials]` and `[[spheres]]`, a file may name a built-in scene, as pictures of many
 //! spheres do: `scene = "field:1000000"`. With it comes `scene_mark`, a checksum that shows whether the scene has changed.
 //!
+//! Scenes of many spheres have a table of them: `spheres = "FILE.csv"`, or the table itself as a string of several lines.
+//!
+//! ```csv
+//! x,y,z,radius,material
+//! 0.0,-1000.0,0.0,1000.0,ground
+//! ```
+//!
 //! `[[keyframes]]` move the camera of an animation: each has a `frame` and the keys of `[camera]`.
 //!
 //! A recipe that is written and read back is the same to the bit, except for its name, which is that of the file.
 
 mod named;
 mod read;
+mod table;
 mod write;
 
 pub use read::{load, parse};
+pub use table::inputs;
 pub use write::{sphere_to_toml, to_picture_toml, to_toml};

@@ -1,6 +1,7 @@
 //! From TOML to a recipe: serde checks the form, [`recipe_of`] the values.
 
 use super::named;
+use super::table::Table;
 use crate::job::recipe::{DEFAULT_SAMPLES_PER_PIXEL, Recipe};
 use crate::job::render::{DEPTH_LIMIT, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::scene::animation::{FRAME_LIMIT, Keyframe};
@@ -10,15 +11,18 @@ use crate::system::files::{self, InputError, ShownPath};
 use crate::system::memory;
 use anyhow::anyhow;
 use glam::DVec3;
-use serde::Deserialize;
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
-use std::fmt::Display;
+use std::fmt::{self, Display};
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 use toml::Spanned;
 
-/// Longest scene file, bytes: about ten million spheres.
+/// Longest scene file, bytes.
 const FILE_LIMIT: u64 = 1 << 30;
 
 /// Maximum bytes of memory per value, key or line of a scene file while it is read. Measured with listed spheres, which
@@ -44,7 +48,8 @@ pub fn load(path: &Path) -> anyhow::Result<Recipe> {
         InputError::unreadable(path, "it is not UTF-8 text; save it as UTF-8, or name a .toml file")
     })?;
     let stem = path.file_stem().map_or_else(|| label.clone(), |stem| stem.to_string_lossy().into_owned());
-    Ok(Recipe { name: stem, ..parse(&text, &label)? })
+    let directory = path.parent().unwrap_or(Path::new(""));
+    Ok(Recipe { name: stem, ..parse_in(Some(directory), &text, &label)? })
 }
 
 /// Reads the text of a scene file. `name` becomes the name of the recipe, and messages start with it.
@@ -52,7 +57,13 @@ pub fn load(path: &Path) -> anyhow::Result<Recipe> {
 /// # Errors
 /// If the text is malformed, or if no picture can be made from it; with the line and what to do.
 pub fn parse(text: &str, name: &str) -> anyhow::Result<Recipe> {
-    let values = text.bytes().filter(|byte| b",=[{\n".contains(byte)).count() as u64;
+    parse_in(None, text, name)
+}
+
+/// As [`parse`]. Tables are in `directory`.
+fn parse_in(directory: Option<&Path>, text: &str, name: &str) -> anyhow::Result<Recipe> {
+    let outside_tables = text.split("'''").step_by(2).flat_map(str::bytes);
+    let values = outside_tables.filter(|byte| b",=[{\n".contains(byte)).count() as u64;
     let bytes = text.len() as u64 + VALUE_BYTES * values;
     let remedy = "use a scene of fewer spheres, or close other programs";
     memory::check(|| format!("reading {name}"), bytes, remedy)?;
@@ -64,7 +75,14 @@ pub fn parse(text: &str, name: &str) -> anyhow::Result<Recipe> {
         }
         error_at(text, name, place, &reason)
     })?;
-    recipe_of(raw, name).map_err(|(place, reason)| error_at(text, name, place.start, &reason))
+    let recipe = recipe_of(raw, name, |place, value| {
+        let line = 1 + text[..place.start].matches('\n').count();
+        Table::open(value, line, name, directory)
+    });
+    recipe.map_err(|refusal| match refusal {
+        Refusal::Value(place, reason) => error_at(text, name, place.start, &reason),
+        Refusal::Table(error) => error,
+    })
 }
 
 /// Whether the line at `place` has a comma between two digits outside a list.
@@ -93,13 +111,14 @@ fn toml_message(mut error: toml::de::Error) -> String {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RawFile {
+struct RawFile<'a> {
     /// A built-in scene, instead of sky, materials and spheres.
     scene: Option<Spanned<String>>,
     scene_mark: Option<Spanned<String>>,
     sky: Option<Spanned<RawSky>>,
     materials: Option<BTreeMap<Spanned<String>, Material>>,
-    spheres: Option<Vec<Spanned<RawSphere>>>,
+    #[serde(borrow)]
+    spheres: Option<Spanned<RawSpheres<'a>>>,
     camera: Spanned<RawCamera>,
     #[serde(default)]
     keyframes: Vec<Spanned<RawCamera>>,
@@ -148,6 +167,38 @@ struct RawSky {
     top: Option<Triple>,
 }
 
+enum RawSpheres<'a> {
+    Listed(Vec<Spanned<RawSphere>>),
+    /// A table, or the name of its file.
+    Table(Cow<'a, str>),
+}
+
+impl<'de: 'a, 'a> Deserialize<'de> for RawSpheres<'a> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Either;
+        impl<'de> Visitor<'de> for Either {
+            type Value = RawSpheres<'de>;
+
+            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+                formatter.write_str("a list of spheres, a table of them, or the name of its file")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Self::Value, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(list)).map(RawSpheres::Listed)
+            }
+
+            fn visit_borrowed_str<E>(self, text: &'de str) -> Result<Self::Value, E> {
+                Ok(RawSpheres::Table(text.into()))
+            }
+
+            fn visit_str<E>(self, text: &str) -> Result<Self::Value, E> {
+                Ok(RawSpheres::Table(text.to_owned().into()))
+            }
+        }
+        deserializer.deserialize_any(Either)
+    }
+}
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
 struct RawSphere {
@@ -183,15 +234,23 @@ struct RawSettings {
     estimate_error: Option<bool>,
 }
 
-/// Where the text is wrong, and why.
-type Refusal = (Range<usize>, String);
-
-fn refuse(place: Range<usize>, reason: impl Display) -> Refusal {
-    (place, reason.to_string())
+enum Refusal {
+    /// Where the text is wrong, and why.
+    Value(Range<usize>, String),
+    /// The whole message.
+    Table(anyhow::Error),
 }
 
-/// Checks every value here, where its position in the text is known.
-fn recipe_of(raw: RawFile, name: &str) -> Result<Recipe, Refusal> {
+fn refuse(place: Range<usize>, reason: impl Display) -> Refusal {
+    Refusal::Value(place, reason.to_string())
+}
+
+/// Checks every value here, where its position in the text is known. `table` opens a table of spheres.
+fn recipe_of<'a>(
+    raw: RawFile<'a>,
+    name: &str,
+    table: impl FnOnce(Range<usize>, Cow<'a, str>) -> anyhow::Result<Table<'a>>,
+) -> Result<Recipe, Refusal> {
     let scene = match raw.scene {
         Some(scene) if raw.sky.is_some() || raw.materials.is_some() || raw.spheres.is_some() => {
             let reason = "sky, materials and spheres cannot be combined with scene, which has its own; remove one of them";
@@ -199,8 +258,18 @@ fn recipe_of(raw: RawFile, name: &str) -> Result<Recipe, Refusal> {
         }
         Some(scene) => builtin_scene(&scene, raw.scene_mark.as_ref())?,
         None => {
-            let sky = sky_of(raw.sky)?;
-            Arc::new(listed_scene(sky, raw.materials.unwrap_or_default(), raw.spheres.unwrap_or_default())?)
+            let (mut scene, mut index_of) =
+                painted_scene(sky_of(raw.sky)?, raw.materials.unwrap_or_default())?;
+            let place = raw.spheres.as_ref().map(Spanned::span).unwrap_or_default();
+            match raw.spheres.map(Spanned::into_inner) {
+                Some(RawSpheres::Listed(spheres)) => add_listed(spheres, &mut scene, &mut index_of)?,
+                Some(RawSpheres::Table(text)) => {
+                    let table = table(place, text).map_err(Refusal::Table)?;
+                    table.add_to(&mut scene, &mut index_of).map_err(Refusal::Table)?;
+                }
+                None => {}
+            }
+            Arc::new(scene)
         }
     };
     let camera = camera_of(&raw.camera, None)?;
@@ -252,11 +321,11 @@ fn sky_of(raw: Option<Spanned<RawSky>>) -> Result<Sky, Refusal> {
     Ok(sky)
 }
 
-fn listed_scene(
+/// A scene without spheres, and the index of each of its materials.
+fn painted_scene(
     sky: Sky,
     materials: BTreeMap<Spanned<String>, Material>,
-    spheres: Vec<Spanned<RawSphere>>,
-) -> Result<Scene, Refusal> {
+) -> Result<(Scene, HashMap<String, usize>), Refusal> {
     let mut scene = Scene { sky, ..Scene::default() };
     // Restore the file's order; the map sorted them by name.
     let mut named: Vec<_> = materials.into_iter().collect();
@@ -268,20 +337,28 @@ fn listed_scene(
         material.validate(format_args!("materials.{name}")).map_err(|error| refuse(place, error))?;
         index_of.insert(name.clone(), scene.add_material(name, material));
     }
+    Ok((scene, index_of))
+}
+
+fn add_listed(
+    spheres: Vec<Spanned<RawSphere>>,
+    scene: &mut Scene,
+    index_of: &mut HashMap<String, usize>,
+) -> Result<(), Refusal> {
     scene.spheres.reserve_exact(spheres.len());
     for (index, sphere) in spheres.into_iter().enumerate() {
         let place = sphere.span();
         let RawSphere { center: Triple(center), radius, material } = sphere.into_inner();
-        let material = material_of(material, index, &mut scene, &mut index_of)
-            .map_err(|reason| refuse(place.clone(), reason))?;
+        let material =
+            material_of(material, index, scene, index_of).map_err(|reason| refuse(place.clone(), reason))?;
         scene.add_sphere(center, radius, material);
         let validated = scene.spheres[index].validate(index, scene.materials.len());
         validated.map_err(|error| refuse(place, error))?;
     }
-    Ok(scene)
+    Ok(())
 }
 
-/// The index of a sphere's material. An inline one gets a unique name.
+/// The index of a sphere's material.
 fn material_of(
     value: toml::Value,
     sphere: usize,
@@ -297,20 +374,30 @@ fn material_of(
         table @ toml::Value::Table(_) => {
             let material = Material::deserialize(table);
             let material = material.map_err(|error| format!("{what}: {}", toml_message(error)))?;
-            material.validate(what).map_err(|error| error.to_string())?;
-            let mut name = format!("sphere-{sphere}");
-            while index_of.contains_key(&name) {
-                name.push('*');
-            }
-            let index = scene.add_material(name.clone(), material);
-            index_of.insert(name, index);
-            Ok(index)
+            added_material(sphere, material, scene, index_of)
         }
         other => Err(format!(
             "{what} is {other}, but must be a material's name or a table such as {{ kind = \"metal\", albedo = [0.8, 0.8, \
              0.8] }}"
         )),
     }
+}
+
+/// Adds the own material of a sphere, which gets a unique name, and returns its index.
+pub(super) fn added_material(
+    sphere: usize,
+    material: Material,
+    scene: &mut Scene,
+    index_of: &mut HashMap<String, usize>,
+) -> Result<usize, String> {
+    material.validate(format_args!("spheres[{sphere}].material")).map_err(|error| error.to_string())?;
+    let mut name = format!("sphere-{sphere}");
+    while index_of.contains_key(&name) {
+        name.push('*');
+    }
+    let index = scene.add_material(name.clone(), material);
+    index_of.insert(name, index);
+    Ok(index)
 }
 
 /// The camera. `base` has the values of missing keys; without it, some keys are required.

@@ -1,6 +1,7 @@
 //! From a recipe to TOML.
 
 use super::named::{mark, name_of};
+use super::table;
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderSettings;
 use crate::scene::animation::Keyframe;
@@ -11,19 +12,29 @@ use glam::DVec3;
 /// Above this many spheres, each takes one line, and they come first in the file.
 const LONG_FORM_LIMIT: usize = 40;
 
+/// From this many spheres on, they are a table.
+const TABLE_FROM: usize = 10_000;
+
 /// The recipe as a scene file, without its name. Numbers have the fewest digits that give the same bits again.
 ///
 /// A recipe that is not valid is written as it is; reading it back reports what is wrong.
 pub fn to_toml(recipe: &Recipe) -> String {
     let Scene { materials, spheres, sky } = &*recipe.scene;
     let is_long = spheres.len() > LONG_FORM_LIMIT;
+    let table = (spheres.len() >= TABLE_FROM).then(|| table::to_value(&recipe.scene)).flatten();
     let values = |sphere: &Sphere| {
         let material = materials.get(sphere.material).map_or("", |named| &named.name);
         (vector(sphere.center), number(sphere.radius), toml_string(material))
     };
-    let mut text = String::with_capacity(1000 + 100 * spheres.len());
+    let mut text = String::new();
     if is_long {
-        text.push_str("# Camera, render settings, sky and materials follow the spheres.\nspheres = [\n");
+        text.push_str("# Camera, render settings, sky and materials follow the spheres.\nspheres = ");
+    }
+    if let Some(table) = table {
+        text += &table;
+        text.push_str("\n\n");
+    } else if is_long {
+        text.push_str("[\n");
         for (center, radius, material) in spheres.iter().map(values) {
             text += &format!("  {{ center = {center}, radius = {radius}, material = {material} }},\n");
         }

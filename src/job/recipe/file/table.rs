@@ -1,0 +1,208 @@
+//! The spheres of a scene of many as a table: CSV, in a file of its own or in a string of the scene file. TOML takes 3 kB
+//! of memory per sphere.
+
+use super::read::added_material;
+use crate::scene::{Material, Scene, Sphere, missing_material};
+use crate::system::files::{self, InputError, ShownPath};
+use crate::system::memory;
+use anyhow::{Context, Result, anyhow};
+use glam::DVec3;
+use serde::Deserialize;
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Longest table, bytes: about twenty million spheres.
+const LENGTH_LIMIT: u64 = 1 << 30;
+
+const PLACE: [&str; 4] = ["x", "y", "z", "radius"];
+const MATERIAL: &str = "material";
+const COLOUR: [&str; 3] = ["red", "green", "blue"];
+
+/// The text of a table.
+pub(super) struct Table<'a> {
+    text: Cow<'a, str>,
+    /// The file that it is in, and the lines of that file before it.
+    file: String,
+    lines_before: usize,
+}
+
+impl<'a> Table<'a> {
+    /// The table in a `value` of several lines at a `line` of the scene file `name`, or in the file of that name in
+    /// `directory`.
+    pub fn open(value: Cow<'a, str>, line: usize, name: &str, directory: Option<&Path>) -> Result<Self> {
+        if value.contains('\n') {
+            return Ok(Table { text: value, file: name.to_owned(), lines_before: line });
+        }
+        let directory = directory.with_context(|| {
+            format!(
+                "{name}:{line}: spheres names the file {value:?}, which only a scene file can do; put its table here"
+            )
+        })?;
+        let path = directory.join(&*value);
+        let text = String::from_utf8(files::read(&path, "a table of spheres", LENGTH_LIMIT)?)
+            .map_err(|_| InputError::unreadable(&path, "it is not UTF-8 text; save it as UTF-8"))?;
+        Ok(Table { text: text.into(), file: path.shown(), lines_before: 0 })
+    }
+
+    /// Adds its spheres to a scene that has the materials `index_of`.
+    pub fn add_to(&self, scene: &mut Scene, index_of: &mut HashMap<String, usize>) -> Result<()> {
+        let at =
+            |line: usize, reason: String| anyhow!("{}:{}: {reason}", self.file, self.lines_before + line);
+        let rows = self.text.bytes().filter(|byte| *byte == b'\n').count();
+        let remedy = "use a table of fewer spheres, or close other programs";
+        memory::check(|| format!("reading {}", self.file), (rows * size_of::<Sphere>()) as u64, remedy)?;
+        scene.spheres.reserve_exact(rows);
+        let text = self.text.trim_start_matches('\u{feff}');
+        let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
+        let (line, header) = lines.next().unwrap_or((1, ""));
+        let columns = Columns::of(header).map_err(|reason| at(line, reason))?;
+        let mut coloured = HashMap::new();
+        for (line, row) in lines {
+            let index = scene.spheres.len();
+            let sphere = columns.sphere(row, index, |paint| match paint {
+                Paint::Material(name) => {
+                    index_of.get(name).copied().ok_or_else(|| missing_material(index, name).to_string())
+                }
+                Paint::Colour(albedo) => {
+                    let bits = albedo.to_array().map(f64::to_bits);
+                    if let Some(known) = coloured.get(&bits) {
+                        return Ok(*known);
+                    }
+                    let own = added_material(index, Material::Lambertian { albedo }, scene, index_of)?;
+                    coloured.insert(bits, own);
+                    Ok(own)
+                }
+            });
+            let sphere = sphere.map_err(|reason| at(line, reason))?;
+            sphere.validate(index, scene.materials.len()).map_err(|error| at(line, error.to_string()))?;
+            scene.spheres.push(sphere);
+        }
+        Ok(())
+    }
+}
+
+/// The values of a row.
+fn fields(row: &str) -> impl Iterator<Item = &str> {
+    row.split(',').map(|field| {
+        let field = field.trim();
+        field.strip_prefix('"').and_then(|field| field.strip_suffix('"')).unwrap_or(field)
+    })
+}
+
+/// How a row says what its sphere looks like.
+enum Paint<'a> {
+    Material(&'a str),
+    Colour(DVec3),
+}
+
+/// Where in a row each value is.
+struct Columns {
+    count: usize,
+    place: [usize; 4],
+    paint: PaintColumns,
+}
+
+enum PaintColumns {
+    Material(usize),
+    Colour([usize; 3]),
+}
+
+impl Columns {
+    fn of(header: &str) -> Result<Columns, String> {
+        let names: Vec<&str> = fields(header).collect();
+        let column = |name: &str| names.iter().position(|own| *own == name);
+        let paint = match (column(MATERIAL), COLOUR.map(column)) {
+            (Some(material), [None, None, None]) => Some(PaintColumns::Material(material)),
+            (None, [Some(red), Some(green), Some(blue)]) => Some(PaintColumns::Colour([red, green, blue])),
+            _ => None,
+        };
+        let needed = match paint {
+            Some(PaintColumns::Colour(_)) => PLACE.len() + COLOUR.len(),
+            _ => PLACE.len() + 1,
+        };
+        match (PLACE.map(column), paint) {
+            ([Some(x), Some(y), Some(z), Some(radius)], Some(paint)) if names.len() == needed => {
+                Ok(Columns { count: needed, place: [x, y, z, radius], paint })
+            }
+            _ => Err(format!(
+                "the first line of a table of spheres is {header:?}, but must name its columns: x,y,z,radius and either \
+                 material or red,green,blue, each once, separated by commas, and no others"
+            )),
+        }
+    }
+
+    /// The sphere of a row. `material` finds or makes its material.
+    fn sphere(
+        &self,
+        row: &str,
+        index: usize,
+        material: impl FnOnce(Paint<'_>) -> Result<usize, String>,
+    ) -> Result<Sphere, String> {
+        let mut values = [""; PLACE.len() + COLOUR.len()];
+        let mut found = 0;
+        for field in fields(row) {
+            if let Some(value) = values.get_mut(found) {
+                *value = field;
+            }
+            found += 1;
+        }
+        if found != self.count {
+            return Err(format!(
+                "spheres[{index}] has {found} values, but the table has {} columns; separate the values by commas, and \
+                 write a point in a number",
+                self.count
+            ));
+        }
+        let number = |column: usize, name: &str| {
+            let value = values[column];
+            value.parse::<f64>().map_err(|_| {
+                format!("spheres[{index}].{name} is {value:?}, but must be a number such as -1.5 or 2e3")
+            })
+        };
+        let [x, y, z, radius] = self.place;
+        let center = DVec3::new(number(x, "x")?, number(y, "y")?, number(z, "z")?);
+        let radius = number(radius, "radius")?;
+        let paint = match self.paint {
+            PaintColumns::Material(column) => Paint::Material(values[column]),
+            PaintColumns::Colour([red, green, blue]) => {
+                Paint::Colour(DVec3::new(number(red, "red")?, number(green, "green")?, number(blue, "blue")?))
+            }
+        };
+        Ok(Sphere { center, radius, material: material(paint)? })
+    }
+}
+
+/// The spheres as the value of a scene file's key; `None` if the name of a material does not fit into a table.
+pub(super) fn to_value(scene: &Scene) -> Option<String> {
+    let fits =
+        |name: &str| name == name.trim() && !name.contains(|c: char| "\",'\\".contains(c) || c.is_control());
+    let names = || scene.materials.iter().map(|named| named.name.as_str());
+    if !names().all(fits) {
+        return None;
+    }
+    let names: Vec<&str> = names().collect();
+    let mut text = String::with_capacity(64 * scene.spheres.len());
+    text += &format!("'''\n{},{MATERIAL}\n", PLACE.join(","));
+    for Sphere { center: DVec3 { x, y, z }, radius, material } in &scene.spheres {
+        let name = names.get(*material).copied().unwrap_or_default();
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{x:?},{y:?},{z:?},{radius:?},{name}");
+    }
+    Some(text + "'''")
+}
+
+/// The files that a scene file is read from: itself, and its table, if it names one.
+pub fn inputs(scene_file: &Path) -> Vec<PathBuf> {
+    #[derive(Deserialize)]
+    struct Line {
+        spheres: String,
+    }
+    let text = fs::read_to_string(scene_file).unwrap_or_default();
+    let lines = text.lines().filter(|line| line.trim_start().starts_with("spheres"));
+    let table = lines.filter_map(|line| toml::from_str(line).ok()).next();
+    let table = table.map(|Line { spheres }| scene_file.with_file_name(spheres));
+    [scene_file.to_owned()].into_iter().chain(table).collect()
+}
