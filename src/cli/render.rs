@@ -369,7 +369,7 @@ fn plan(flags: &RenderFlags, recipe: &Recipe) -> Plan {
 #[cfg(test)]
 mod tests {
     use crate::cli::{Request, parse};
-    use std::path::Path;
+    use crate::job::output::OutputFormat;
     use std::time::Duration;
 
     fn render(line: &str) -> super::BatchOptions {
