@@ -110,6 +110,7 @@ impl Model {
             partners
                 .extend(DEPTHS.into_iter().filter(|rays| *rays != settings.max_depth).map(Partner::Depth));
         }
+        partners.extend(self.view.kept.mine.iter().map(|_| Partner::Mine));
         partners.extend(self.view.kept.iter().map(|kept| Partner::Kept(kept.number)));
         partners
     }

@@ -5,8 +5,7 @@ use super::compare;
 use crate::app::commands::{PanelContext, Snapshot};
 use crate::app::model::Device;
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{compact, hint, small, tip};
-use crate::measure::grouped;
+use crate::app::toolkit::widgets::{compact, hint, samples_words, small, tip};
 use crate::numbers::statistics::fit::{Point, Prediction, predict};
 use crate::progressive::{HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, Status};
 use eframe::egui::{self, Color32, Rangef, Sense, Sides, Ui, UiBuilder, Vec2b};
@@ -93,9 +92,8 @@ impl Race {
             let error = status.error.map_or_else(String::new, |error| {
                 format!(", error {} %", compact(two_digits(100.0 * error.rmse)))
             });
-            let samples = grouped(status.samples_per_pixel);
             let seconds = compact(two_digits(status.trace.as_secs_f64()));
-            small(ui, format!("{samples} samples per pixel in {seconds} s{error}"));
+            small(ui, format!("{} in {seconds} s{error}", samples_words(status.samples_per_pixel)));
         }
         match self.factor() {
             Some((device, factor)) => {
@@ -159,13 +157,13 @@ fn plot(ui: &mut Ui, cx: &Snapshot) {
         .y_grid_spacer(uniform_grid_spacer(|_| [1.0, 1.0, 1.0]))
         .grid_color(theme::colours(ui).line)
         .label_formatter(|hover| {
-            let (HoverPosition::NearDataPoint { position: place, .. }
-            | HoverPosition::Elsewhere { position: place }) = hover;
+            // Beside the curves there is nothing to tell.
+            let HoverPosition::NearDataPoint { position: place, .. } = hover else { return None };
             let place = [place.x, place.y];
             let other = cx.other.iter().flat_map(|other| &other.history);
             let point = status.history.iter().chain(other).find(|point| of_history(point) == place);
             let samples = point
-                .map_or_else(String::new, |point| format!("{} samples per pixel\n", point.samples_per_pixel));
+                .map_or_else(String::new, |point| format!("{}\n", samples_words(point.samples_per_pixel)));
             let [seconds, error] = place.map(|power| compact(10_f64.powf(power)));
             Some(format!("{samples}{seconds} s\nerror {error} %"))
         });

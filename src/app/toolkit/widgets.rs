@@ -2,6 +2,7 @@
 
 use super::theme;
 use crate::app::commands::{Command, PanelContext};
+use crate::measure::grouped;
 use eframe::egui::collapsing_header::{CollapsingState, paint_default_icon};
 use eframe::egui::{
     self, Align, Atom, Button, Color32, ComboBox, CornerRadius, DragValue, Id, IntoAtoms, Key, Label, Layout,
@@ -88,11 +89,13 @@ pub fn tip(ui: &Ui, response: Response, help: &str, disabled_reason: Option<&str
 fn show_tip(ui: &Ui, response: &Response, text: &str) {
     const BESIDE: &[RectAlign] =
         &[RectAlign::RIGHT_START, RectAlign::LEFT_START, RectAlign::RIGHT_END, RectAlign::LEFT_END];
+    /// Anything narrower is a column, points.
+    const COLUMN: f32 = 450.0;
     const BELOW: &[RectAlign] =
         &[RectAlign::BOTTOM_START, RectAlign::BOTTOM_END, RectAlign::TOP_START, RectAlign::TOP_END];
     let clip = ui.clip_rect();
     let is_menu = ui.layout().horizontal_justify();
-    let is_panel = !is_menu && clip.height() > clip.width();
+    let is_panel = !is_menu && clip.width() < COLUMN;
     let around = match is_panel {
         true => Rect::from_x_y_ranges(clip.x_range(), response.rect.y_range()),
         false => response.rect,
@@ -506,6 +509,11 @@ fn rounded(n: f64, scale: f64, digits: i32) -> f64 {
     let step = 10_f64.powi(scale.log10().floor().clamp(-300.0, 300.0) as i32 + 1 - digits);
     let rounded = (n / step).round() * step;
     if rounded.is_finite() { rounded } else { n }
+}
+
+/// A number of samples, in words.
+pub fn samples_words(count: u64) -> String {
+    format!("{} sample{} per pixel", grouped(count), if count == 1 { "" } else { "s" })
 }
 
 /// A point in few characters, as in `13, 2, 3`.
