@@ -180,3 +180,31 @@ fn view_and_pixel_stay_where_they_are() {
     places.dedup();
     assert_eq!(places.len(), 1, "{places:?}");
 }
+
+/// Buttons stay under the pointer while the sentence about the two pictures comes and goes.
+#[test]
+fn tools_of_a_comparison_do_not_move() {
+    let mut harness = open_sized(SMALL, [1280.0, 800.0]);
+    send(&mut harness, Command::Wipe);
+    until(&mut harness, "both", |window| window.has_other_picture() && has_samples(4)(window));
+    let place = |harness: &Harness<'_, Window>| control(harness, "Difference").rect();
+    let before = place(&harness);
+    send(&mut harness, Command::OnlyNoise);
+    until(&mut harness, "a verdict", |window| window.verdict().is_some());
+    harness.run_steps(3);
+    assert_eq!(place(&harness), before);
+}
+
+#[test]
+fn the_text_of_a_stage_keeps_room_in_low_windows() {
+    for size in [[800.0, 600.0], [1280.0, 800.0]] {
+        let mut harness = open_sized(SMALL, size);
+        send(&mut harness, Command::Info);
+        send(&mut harness, Command::Info);
+        control(&harness, "View, folded").click();
+        harness.run_steps(20);
+        let top = control(&harness, "Stage").rect().bottom();
+        let bottom = control(&harness, "View, open").rect().top();
+        assert!(bottom - top > 0.2 * size[1], "{size:?}: from {top} to {bottom}");
+    }
+}

@@ -77,7 +77,7 @@ pub fn verdict(ui: &mut Ui, cx: &PanelContext) {
     }
     let [[_, name], _] = cx.model.side_names();
     match (&cx.other, cx.model.view.compared(cx.document())) {
-        (_, None | Some(Partner::Raw | Partner::Kept(_))) => {}
+        (_, None | Some(Partner::Raw | Partner::Kept(_) | Partner::Mine)) => {}
         (Some(other), _) => {
             _ = small(ui, format!("{name}: {}", samples_words(other.samples_per_pixel)));
         }

@@ -322,7 +322,7 @@ mod tests {
         assert_eq!(sentence(&snapshot), "A coarse picture while you move");
         snapshot.is_coarse = false;
         (snapshot.model.is_paused, snapshot.is_held) = (true, true);
-        assert_eq!(sentence(&snapshot), "Paused; the picture has moved, and 100 samples show it");
+        assert_eq!(sentence(&snapshot), "Paused; the picture has moved and has 100 samples per pixel");
         (snapshot.model.is_paused, snapshot.is_held) = (false, false);
         snapshot.status = Arc::new(Status { phase: Phase::Done(EndReason::NoiseTarget), ..status });
         assert!(

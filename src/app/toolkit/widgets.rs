@@ -666,6 +666,7 @@ mod tests {
         }
         assert_eq!(point_words(DVec3::new(12.974, 2.08e-17, -3.0)), "13, 0, −3");
         assert_eq!(point_words(DVec3::ZERO), "0, 0, 0");
+        assert_eq!([1, 2].map(samples_words), ["1 sample per pixel", "2 samples per pixel"]);
         let number = Number::new(About::new("", ""), -9.0..=9.0);
         assert_eq!([-0.695_65, 2.087_12].map(|n| number.text(n)), ["−0.6957", "2.0871"]);
         let beside = Number { scale: 2.0, ..number.letter("x ") };

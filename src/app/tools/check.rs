@@ -245,8 +245,8 @@ impl Checked {
             ui.add_space(4.0);
             small(ui, "Compare");
             if cx.model.view.partner == Partner::Mine {
-                compare::tools(ui, cx);
                 compare::verdict(ui, cx);
+                compare::tools(ui, cx);
                 ui.horizontal(|ui| {
                     if !answer.places.is_empty() {
                         let words = if place.is_none() { "Show where" } else { "Next place" };
