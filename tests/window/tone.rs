@@ -93,3 +93,23 @@ fn a_denoised_picture_is_shown_measured_and_saved() {
     send(&mut harness, Command::Denoise);
     until(&mut harness, "the picture with its noise", |window| shown(window) == raw);
 }
+
+#[test]
+fn a_saved_denoised_picture_has_all_samples() {
+    let mut harness = open("--stage glass-schlick --size 32x18 --samples 4000000000");
+    send(&mut harness, Command::Denoise);
+    until_seen(&mut harness, "denoised: error");
+    send(&mut harness, Command::Pause);
+    until(&mut harness, "the pause", |window| window.status().phase == Phase::Paused);
+    let samples = |window: &Window| window.status().samples_per_pixel;
+    let before = samples(harness.state());
+    send(&mut harness, Command::Pause);
+    until(&mut harness, "more samples", |window| samples(window) > before + before / 2);
+    let before = samples(harness.state());
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("saved.png");
+    save(&mut harness, Command::Save, &path);
+    let description = read_description(&path).unwrap();
+    assert!(description.get(key::DENOISED).is_some());
+    assert!(description.get("Samples").unwrap().parse::<u64>().unwrap() >= before);
+}

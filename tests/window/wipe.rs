@@ -74,3 +74,15 @@ fn differences_from_another_stage_appear_once_it_is_traced() {
     send(&mut harness, Command::Difference);
     until(&mut harness, "the sky again", |window| window.shown_pixel([0, 0]) == Some(sky));
 }
+
+/// A new scene belongs to no stage.
+#[test]
+fn a_comparison_with_a_stage_ends_with_the_stages() {
+    let mut harness = open("--stage metal --size 32x18 --samples 16 --device cpu");
+    send(&mut harness, Command::Wipe);
+    assert!(matches!(harness.state().partner(), Some(Partner::Stage(_))));
+    send(&mut harness, Command::NextStage);
+    assert!(harness.state().model.view.mode().is_some());
+    send(&mut harness, Command::NewScene);
+    assert_eq!(harness.state().model.view.mode(), None);
+}

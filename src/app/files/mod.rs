@@ -12,7 +12,7 @@ use crate::app::tracing::subject::Subject;
 use crate::backends::BackendChoice;
 use crate::batch::{Event, Studio, write_frames};
 use crate::cli::{CompanionOptions, FramesOptions, ProgressChoice};
-use crate::denoise::Denoised;
+use crate::denoise::{self, Denoised};
 use crate::film::Film;
 use crate::job::output::{Description, OutputFormat, is_named_picture, key, write_image};
 use crate::job::recipe::file;
@@ -120,7 +120,7 @@ impl Files {
                 _ => "nothing was traced".to_owned(),
             })?;
             let describe = describer(&document, &status, Some(0.0));
-            write(&film, None, &document, describe, named)
+            write(&film, false, &document, describe, named)
         })
     }
 
@@ -252,16 +252,18 @@ impl Files {
         let (document, tracing) = (subject.document.clone(), subject.tracing);
         let describe = describer(&document, tracing.main.status(), tracing.seconds_before);
         let answer = self.saved.promise(context);
-        let denoised = subject.denoised.map(Arc::clone);
-        let work = move |film: &Film| write(film, denoised.as_deref(), &document, describe, named);
+        let is_denoised = subject.denoised.is_some();
+        let work = move |film: &Film| write(film, is_denoised, &document, describe, named);
         tracing.main.inspect(move |film| answer.give(work(film)));
     }
 
-    /// Resolves the film on the screen, or a part of it, as it is saved with 8 bits, at the next end of a pass.
+    /// Resolves the film on the screen as it is saved with 8 bits, at the next end of a pass.
     pub fn copy(&mut self, context: &Context, subject: &Subject<'_>) {
-        let transfer = subject.document.rules().transfer;
+        let (transfer, is_denoised) = (subject.document.rules().transfer, subject.denoised.is_some());
         let answer = self.copied.answer(context);
-        subject.inspect(move |film| {
+        subject.tracing.main.inspect(move |film| {
+            let denoised = denoised(film, is_denoised);
+            let film = denoised.as_ref().map_or(film, |denoised| &denoised.film);
             let size = [film.width(), film.height()];
             let picture = ColorImage::from_rgb(size.map(|pixels| pixels as usize), &film.to_rgb8(transfer));
             answer.give(Ok((picture, format!("picture, {} × {}", size[0], size[1]))));
@@ -310,9 +312,15 @@ impl Files {
     }
 }
 
+/// The denoised picture of all samples of a film, which has more of them than that on the screen; the raw one if that is
+/// better, or wanted.
+fn denoised(film: &Film, is_wanted: bool) -> Option<Denoised> {
+    is_wanted.then(|| denoise::of_film(film).ok()).flatten()
+}
+
 fn write(
     film: &Film,
-    denoised: Option<&Denoised>,
+    is_denoised: bool,
     document: &Document,
     describe: impl FnOnce(&Film) -> Description,
     (format, path): (OutputFormat, PathBuf),
@@ -321,10 +329,10 @@ fn write(
         return Err("nothing has been traced yet; try again in a moment".to_owned());
     }
     // A film is saved as it is.
-    let denoised = denoised.filter(|_| format != OutputFormat::Exr);
-    let film = denoised.map_or(film, |denoised| &denoised.film);
+    let denoised = denoised(film, is_denoised && format != OutputFormat::Exr);
+    let film = denoised.as_ref().map_or(film, |denoised| &denoised.film);
     let mut description = describe(film);
-    if let Some(denoised) = denoised {
+    if let Some(denoised) = &denoised {
         description.set(key::DENOISED, denoised.error.words());
     }
     let written = write_image(&path, film, document.rules().transfer, &description);

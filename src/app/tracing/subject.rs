@@ -1,5 +1,5 @@
 //! The subject on the screen: the traced film or its denoised picture, which is made in the background when the film has twice
-//! the samples of the one before, and at the end of a render or a pause.
+//! the samples of the one before, and at the end of a render or a pause. What is saved or copied has all samples.
 
 use super::Tracing;
 use crate::app::model::{Document, Found, ViewState};
@@ -15,7 +15,8 @@ use std::time::{Duration, Instant};
 /// Fewer samples per pixel are not worth denoising.
 const LEAST_SAMPLES: u64 = 4;
 
-/// Filtering takes at most one part in this many of the time, because it takes processors from the tracer.
+/// Filtering takes at most one part in this many of the time, because it takes processors from the tracer, as long as the
+/// picture on the screen has less error than the raw one.
 const SHARE: u32 = 25;
 
 /// Tells pictures apart: the run of the render, and the samples of the denoised picture.
@@ -106,7 +107,13 @@ impl Denoising {
         let known = self.last.filter(|(of, _)| *of == run).map_or(0, |(_, samples)| samples);
         let is_still = status.phase.is_over() || status.phase == Phase::Paused;
         let is_resting = known > 0 && self.rest_until.is_some_and(|until| Instant::now() < until);
-        let is_due = if is_still { samples > known } else { samples >= 2 * known && !is_resting };
+        // As soon as the raw picture is better than the one on the screen, that one has to go.
+        let is_outdone = || {
+            let errors = status.error.zip(subject.denoised);
+            errors.is_some_and(|(raw, denoised)| raw.rmse < denoised.error.rmse())
+        };
+        let is_due =
+            if is_still { samples > known } else { samples >= 2 * known && (!is_resting || is_outdone()) };
         if is_on && is_due && samples >= LEAST_SAMPLES && subject.has_samples() && self.working.is_none() {
             let stop = Arc::new(AtomicBool::new(false));
             (self.working, self.last) = (Some((run, Arc::clone(&stop))), Some((run, samples)));

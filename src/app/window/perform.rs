@@ -292,10 +292,17 @@ impl Window {
 
     pub(super) fn show_document(&mut self, document: Document) {
         self.end_sight();
+        let is_with_stage =
+            |model: &Model| matches!(model.view.compared(&model.document), Some(Partner::Stage(_)));
+        let was_with_stage = is_with_stage(&self.model);
         if !Arc::ptr_eq(&document.origin, &self.document().origin) {
             self.leave_picture();
         }
         self.model.document = document;
+        // The next stage has a partner of its own; what has none is not compared with something of another kind.
+        if was_with_stage && !is_with_stage(&self.model) {
+            self.model.view.end_comparison();
+        }
         self.model.selected = None;
         if self.model.remembered.tab == Tab::Check {
             self.model.remembered.tab = Tab::Stage;
