@@ -76,6 +76,7 @@ fn numbers_leave_the_picture_free() {
     harness.run_steps(3);
     for name in ["light", "saved as"] {
         let row = harness.get_by_label(name).rect();
-        assert!(row.top() >= rect.bottom() - 1.0 && row.bottom() <= 600.0, "{name}: {row} below {rect}");
+        assert!(row.top() >= rect.bottom() - 1.0, "{name}: {row} below {rect}");
+        assert!(row.bottom() <= harness.get_by_label_contains("Escape ends").rect().top(), "{name}: {row}");
     }
 }

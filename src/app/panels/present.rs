@@ -172,13 +172,18 @@ fn columns(ui: &mut Ui, unit: f32, texts: [(&str, &str); 2], mut numbers: Option
     let fits = |size: &f32| texts.iter().all(|(_, text)| height(text, *size) <= room);
     let size = SIZES.map(|size| size * unit).into_iter().find(fits).unwrap_or(SIZES[4] * unit);
     ui.spacing_mut().item_spacing = vec2(gap, 0.2 * heading);
-    ui.add_space(heading);
+    ui.add_space(0.5 * heading);
+    let rows = ui.available_height();
     ui.horizontal_top(|ui| {
         for (place, (name, text)) in texts.into_iter().enumerate() {
             ui.vertical(|ui| {
                 ui.set_width(width);
                 if let Some(numbers) = numbers.take_if(|_| place == 1) {
                     enlarge(&ui.ctx().clone(), ui.style_mut());
+                    // Under their header, four rows of a line and a third have room.
+                    let most = (rows - 28.0) / (4.0 * 4.0 / 3.0);
+                    let small = ui.style_mut().text_styles.get_mut(&TextStyle::Small);
+                    small.into_iter().for_each(|font| font.size = font.size.min(most));
                     return numbers(ui);
                 }
                 ui.label(RichText::new(name).size(heading).color(theme::colours(ui).accent));

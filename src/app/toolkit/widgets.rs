@@ -642,7 +642,7 @@ pub fn sign_button(ui: &mut Ui, sign: &str, size: f32, name: &str) -> Response {
 pub fn swatch(ui: &mut Ui, colour: Color32, name: &str) {
     let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
     ui.painter().rect_filled(rect, 2, colour);
-    small(ui, name);
+    ui.add(Label::new(RichText::new(name).small().color(ui.visuals().weak_text_color())).extend());
 }
 
 #[cfg(test)]

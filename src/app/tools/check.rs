@@ -247,15 +247,15 @@ impl Checked {
             if cx.model.view.partner == Partner::Mine {
                 compare::verdict(ui, cx);
                 compare::tools(ui, cx);
-                ui.horizontal(|ui| {
-                    if !answer.places.is_empty() {
+                if !answer.places.is_empty() {
+                    ui.horizontal(|ui| {
                         let words = if place.is_none() { "Show where" } else { "Next place" };
                         command_button(ui, cx, Command::NextPlace, words);
-                    }
-                    if place.is_some() {
-                        command_button(ui, cx, Command::Fit, "Whole picture");
-                    }
-                });
+                        if place.is_some() {
+                            command_button(ui, cx, Command::Fit, "Whole picture");
+                        }
+                    });
+                }
             } else {
                 command_button(ui, cx, Command::CompareWith(Partner::Mine), "Show it beside ours");
             }
@@ -347,13 +347,15 @@ fn change(ui: &mut Ui, remedy: &str) {
 /// Buttons that lead to the section of the mistake, or on.
 fn links(ui: &mut Ui, answer: &Answer, cx: &PanelContext) {
     ui.add_space(4.0);
+    let next = answer.stage.and_then(Stage::next).filter(|_| answer.kind == AnswerKind::Right);
+    if let Some(next) = next {
+        hint(ui, &format!("Section {} adds: {}.", next.section, next.title));
+    }
     ui.horizontal_wrapped(|ui| {
-        let next = answer.stage.and_then(Stage::next).filter(|_| answer.kind == AnswerKind::Right);
-        if let Some(next) = next {
-            hint(ui, &format!("Section {} adds: {}.", next.section, next.title));
-            if ui.add(primary(format!("Next: {}", next.section))).clicked() {
-                cx.send(Command::Stage(next));
-            }
+        if let Some(next) = next
+            && ui.add(primary(format!("Next: {}", next.section))).clicked()
+        {
+            cx.send(Command::Stage(next));
         }
         if let Some(section) = &answer.section {
             let stage = section.stage;

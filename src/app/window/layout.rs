@@ -16,6 +16,9 @@ use eframe::egui::{self, ScrollArea, Ui};
 /// Windows narrower than this many points have no room for two panels beside the picture.
 pub(super) const NARROW: f32 = 1000.0;
 
+/// In windows lower than this many points, what is compared scrolls with the text.
+const LOW: f32 = 500.0;
+
 /// The share of the right panel's height that view and comparison have; more of them scrolls.
 const FOOT: f32 = 0.4;
 
@@ -54,6 +57,7 @@ impl Window {
         let Model { document, view, remembered, .. } = model;
         let has = &cx.model.remembered;
         let (room, is_narrow) = (ui.available_width(), ui.available_width() < NARROW);
+        let is_low = ui.available_height() < LOW;
         bar::ui(ui, cx);
         status::ui(ui, cx, tracing.sizer.offer);
         let mut tabs = Vec::new();
@@ -89,11 +93,18 @@ impl Window {
                             let area = ScrollArea::vertical().max_height(height).auto_shrink([false, true]);
                             area.show(ui, |ui| {
                                 display.tone.ui(ui, view, cx);
-                                compare::ui(ui, cx);
+                                if !is_low {
+                                    compare::ui(ui, cx);
+                                }
                             });
                             numbers(ui, cx, display, tracing, &tools.inspector);
                         });
-                        right::scrolling(ui, |ui| stage_panel::ui(ui, cx));
+                        right::scrolling(ui, |ui| {
+                            stage_panel::ui(ui, cx);
+                            if is_low {
+                                compare::ui(ui, cx);
+                            }
+                        });
                     }
                     Tab::Code => tools.code.ui(ui, cx),
                     Tab::Check => {
