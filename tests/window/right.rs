@@ -42,16 +42,20 @@ fn drop_file(harness: &mut Harness<'_, Window>, content: &[u8]) -> tempfile::Tem
     directory
 }
 
+/// Waits until the picture of a check is shown beside that of its stage.
+fn until_compared(harness: &mut Harness<'_, Window>) {
+    until(harness, "both pictures", |window| {
+        window.is_comparing() && window.has_other_picture() && has_samples(1)(window)
+    });
+}
+
 #[test]
 fn a_picture_of_another_program_is_checked() {
     let mut harness = open(SMALL);
     until(&mut harness, "a picture", has_samples(1));
     let _kept = drop_file(&mut harness, &gradient(false));
     until_seen(&mut harness, "It is right");
-    harness.run_steps(2);
-    assert!(harness.query_by_label("Your picture and ours").is_some());
-    send(&mut harness, Command::CompareMine);
-    until(&mut harness, "my picture", |window| window.has_other_picture() && has_samples(1)(window));
+    until_compared(&mut harness);
     let document = harness.state().shown_document();
     assert!(document.stage().unwrap().section.starts_with("2.") && document.size() == [160, 90]);
     for at in [[0, 0], [80, 40], [159, 89]] {
@@ -59,19 +63,86 @@ fn a_picture_of_another_program_is_checked() {
     }
     let _kept = drop_file(&mut harness, &gradient(true));
     until(&mut harness, "the answer", |window| window.checked().is_some_and(|title| title != "It is right"));
-    harness.run_steps(2);
+    until_compared(&mut harness);
     control(&harness, "Go to 2.2").click();
     harness.run_steps(3);
     assert_eq!(harness.state().shown_document().stage().unwrap().section, "2.2");
-    assert!(harness.query_by_label("Picture").is_some(), "the stage that was chosen is shown");
+    assert!(!harness.state().is_comparing(), "the stage that was chosen is shown alone");
     control(&harness, "Check").click();
-    harness.run_steps(3);
-    assert!(harness.query_by_label("Picture").is_none());
+    until_compared(&mut harness);
+    assert_eq!(harness.state().other_pixel([159, 0]).unwrap()[1], 255, "the picture of the file");
     control(&harness, "Close").click();
     harness.run_steps(3);
-    assert!(harness.state().checked().is_none() && harness.query_by_label("Picture").is_some());
+    assert!(harness.state().checked().is_none() && !harness.state().is_comparing());
     let _kept = drop_file(&mut harness, b"P6\nnothing");
     until_seen(&mut harness, "cannot be checked");
+}
+
+#[test]
+fn a_check_leaves_the_users_own_picture_as_it_was() {
+    let mut harness = open(&format!("{SMALL} --samples 40"));
+    send(&mut harness, Command::AddSphere);
+    until(&mut harness, "my scene", |window| has_samples(40)(window) && window.status().phase.is_over());
+    let own = harness.state().shown_document().clone();
+    let _kept = drop_file(&mut harness, &gradient(true));
+    until_compared(&mut harness);
+    assert_eq!(harness.state().shown_document().size(), [160, 90]);
+    control(&harness, "Close").click();
+    harness.run_steps(3);
+    assert!(*harness.state().shown_document() == own && !harness.state().is_comparing());
+    until(&mut harness, "its samples", has_samples(40));
+    assert!(harness.state().status().contributions.is_empty(), "nothing was traced again");
+    // A picture that was changed during a check stays.
+    let _kept = drop_file(&mut harness, &gradient(true));
+    until_compared(&mut harness);
+    control(&harness, "Go to 2.2").click();
+    harness.run_steps(3);
+    control(&harness, "Check").click();
+    harness.run_steps(3);
+    control(&harness, "Close").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().shown_document().stage().unwrap().section, "2.2");
+    send(&mut harness, Command::Undo);
+}
+
+#[test]
+fn a_changed_picture_is_renewed_beside_ours() {
+    let mut harness = open(SMALL);
+    let folder = drop_file(&mut harness, &gradient(false));
+    until_compared(&mut harness);
+    send(&mut harness, Command::Flip);
+    assert_eq!(harness.state().other_pixel([0, 0]), Some([0, 0, 0]));
+    std::fs::write(folder.path().join("mine.ppm"), gradient(true)).unwrap();
+    until_seen(&mut harness, "is checked again");
+    until(&mut harness, "the new picture", |window| window.other_pixel([0, 0]) == Some([0, 255, 0]));
+    assert!(harness.state().is_comparing(), "it stays flipped");
+}
+
+/// A stage of metal in which a part is wrong: what differs is marked and enlarged.
+#[test]
+fn places_that_differ_are_enlarged_one_by_one() {
+    let mut harness = open("--stage red-sphere --size 160x90");
+    until(&mut harness, "the end", |window| window.status().phase.is_over());
+    let size = harness.state().shown_document().size();
+    let right = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| [x, y]));
+    let pixels = right.flat_map(|[x, y]| match (20..30).contains(&x) && (20..30).contains(&y) {
+        true => [0, 255, 0],
+        false => harness.state().shown_pixel([x, y]).unwrap(),
+    });
+    let file: Vec<u8> = b"P6\n160 90\n255\n".iter().copied().chain(pixels).collect();
+    let _kept = drop_file(&mut harness, &file);
+    until_compared(&mut harness);
+    let whole = harness.state().picture_rect();
+    until_seen(&mut harness, "Show where");
+    control(&harness, "Show where").click();
+    harness.run_steps(3);
+    let rect = harness.state().picture_rect();
+    let place = rect.lerp_inside(egui::vec2(25.0 / 160.0, 25.0 / 90.0));
+    let room = harness.get_by_label("Picture").rect();
+    assert!(rect.width() > 2.0 * whole.width() && room.contains(place), "{rect} {room}");
+    control(&harness, "Whole picture").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().picture_rect(), whole);
 }
 
 #[test]
@@ -108,4 +179,32 @@ fn view_and_pixel_stay_where_they_are() {
     }
     places.dedup();
     assert_eq!(places.len(), 1, "{places:?}");
+}
+
+/// Buttons stay under the pointer while the sentence about the two pictures comes and goes.
+#[test]
+fn tools_of_a_comparison_do_not_move() {
+    let mut harness = open_sized(SMALL, [1280.0, 800.0]);
+    send(&mut harness, Command::Wipe);
+    until(&mut harness, "both", |window| window.has_other_picture() && has_samples(4)(window));
+    let place = |harness: &Harness<'_, Window>| control(harness, "Difference").rect();
+    let before = place(&harness);
+    send(&mut harness, Command::OnlyNoise);
+    until(&mut harness, "a verdict", |window| window.verdict().is_some());
+    harness.run_steps(3);
+    assert_eq!(place(&harness), before);
+}
+
+#[test]
+fn the_text_of_a_stage_keeps_room_in_low_windows() {
+    for size in [[800.0, 600.0], [1280.0, 800.0]] {
+        let mut harness = open_sized(SMALL, size);
+        send(&mut harness, Command::Info);
+        send(&mut harness, Command::Info);
+        control(&harness, "View, folded").click();
+        harness.run_steps(20);
+        let top = control(&harness, "Stage").rect().bottom();
+        let bottom = control(&harness, "View, open").rect().top();
+        assert!(bottom - top > 0.2 * size[1], "{size:?}: from {top} to {bottom}");
+    }
 }

@@ -39,8 +39,6 @@ pub struct Snapshot {
     pub is_held: bool,
     /// Only sky and ground are in sight, unlike from the stage's camera.
     pub is_lost: bool,
-    /// A description of the checked picture.
-    pub checked: Option<String>,
     /// Whether the pointer has been over the picture.
     pub has_pixel: bool,
     /// Whether there is a list of paths.

@@ -310,9 +310,7 @@ table! {
         needs(has_spheres, "There is no sphere in this scene"), also("select");
     FocusSphere "Focus on the sphere", "Sets the focus distance to the nearest point of the selected sphere",
         needs(has_selection, NO_SPHERE), also("sharp depth of field");
-    CompareMine "My picture", "Traces the stage of the picture that is checked, and compares the two",
-        needs(|f| f.model.remembered.mine.is_some(), "No picture is checked; choose Check my picture in the menu File"),
-        unlisted();
+    NextPlace "Next place", "Enlarges the next place where your picture differs most", unlisted();
     RenderAtPartnerSize "Render at its size", "Gives the picture the size of the other one; the samples begin anew",
         unlisted();
     RenderAtSize "Render at this size",

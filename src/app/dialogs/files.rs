@@ -4,6 +4,7 @@ use super::outcome::{Outcome, Purpose, Wanted, What};
 use crate::app::commands::Snapshot;
 use crate::app::model::Document;
 use crate::app::model::animation::FRAMES_PER_SECOND;
+use crate::app::panels::controls::in_shape;
 use crate::app::panels::status::time;
 use crate::app::toolkit::widgets::{About, FIELD, Number, hint, named, primary, row, small};
 use crate::app::toolkit::{Answers, theme};
@@ -285,12 +286,16 @@ impl SaveBox {
             option(ui, &mut self.size, size, label, &help);
         }
         if self.size == Size::Other {
+            let before = self.other;
             ui.horizontal(|ui| {
                 for (name, side) in ["Width", "Height"].into_iter().zip(&mut self.other) {
                     let number = Number::new(About::new(name, "Pixels"), 1.0..=f64::from(SIZE_LIMIT));
                     number.whole_field(ui, FIELD, side);
                 }
             });
+            if self.other != before {
+                self.other = in_shape(snapshot.document().size(), before, self.other);
+            }
         }
         if self.what == What::Animation {
             self.film(ui, snapshot);

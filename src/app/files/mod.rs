@@ -19,7 +19,7 @@ use crate::job::recipe::file;
 use crate::job::render::RenderJob;
 use crate::job::saved::{OpenError, Opened, SavedFilm, open, resume};
 use crate::pages::companion;
-use crate::progressive::describe::describe;
+use crate::progressive::describe::{counted, describe};
 use crate::progressive::{Phase, Status};
 use crate::render_cpu::CpuOptions;
 use crate::system::console;
@@ -130,7 +130,7 @@ impl Files {
     /// Why it cannot begin.
     pub fn save_frames(&mut self, context: &Context, options: FramesOptions) -> Result<(), String> {
         let (count, folder) = (options.frames.end, name_of(&options.names.directory));
-        let words = format!("Rendering {count} frames for {folder}");
+        let words = format!("Rendering {} for {folder}", counted(count.into(), "frame"));
         self.make(context, words, Some(folder), move |interrupt, look| {
             let look = |done| look(f64::from(done) / f64::from(count));
             write_frames(&options, interrupt, look).map_err(|failure| failure.to_string())?;

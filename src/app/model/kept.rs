@@ -2,8 +2,9 @@
 
 use super::Document;
 use crate::comparison::Picture;
+use crate::comparison::check::Mine;
 use crate::film::{Film, fixed_point};
-use crate::job::output::Encoding;
+use crate::job::output::{Encoding, Linear, ReadPicture, Values};
 use crate::progressive::ReferenceMeans;
 use crate::stages::Transfer;
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureOptions};
@@ -61,8 +62,35 @@ impl Kept {
     /// # Errors
     /// If it cannot be read or does not fit into memory.
     pub fn read(context: &Context, path: &Path, transfer: Transfer) -> Result<Self, String> {
+        let picture =
+            Picture::read(path, Some(Encoding::Book(transfer))).map_err(|error| error.to_string())?;
+        let name = path.file_name().unwrap_or(path.as_os_str()).display().to_string();
+        Kept::of_picture(context, name, picture, transfer)
+    }
+
+    /// The picture of the user's own program, whose bytes mean what those of its stage mean.
+    ///
+    /// # Errors
+    /// If it does not fit into memory.
+    pub fn of_mine(context: &Context, name: String, mine: &Mine, transfer: Transfer) -> Result<Self, String> {
+        let &Mine { width, height, format, .. } = mine;
+        let rgb = mine.bytes.iter().map(|pixel| pixel.map(u16::from)).collect();
+        let values = Values::Integers { most: 255, rgb };
+        let (damages, notes) = (Vec::new(), Vec::new());
+        let read = ReadPicture { width, height, format, values, damages, notes, stated: None };
+        let Linear { pixels, steps, limit } = read.linear(Encoding::Book(transfer));
+        let (about, notes, film) = (format.to_owned(), Vec::new(), None);
+        let picture = Picture { name: name.clone(), about, width, height, pixels, steps, limit, notes, film };
+        Kept::of_picture(context, name, picture, transfer)
+    }
+
+    fn of_picture(
+        context: &Context,
+        name: String,
+        picture: Picture,
+        transfer: Transfer,
+    ) -> Result<Self, String> {
         let words = |error: &dyn std::fmt::Display| error.to_string();
-        let picture = Picture::read(path, Some(Encoding::Book(transfer))).map_err(|error| words(&error))?;
         let film = match &picture.film {
             Some(film) => Arc::clone(film),
             None => {
@@ -77,7 +105,6 @@ impl Kept {
                 Arc::new(film)
             }
         };
-        let name = path.file_name().unwrap_or(path.as_os_str()).display().to_string();
         Ok(Kept { picture: Some(picture), ..Kept::of(context, name, film, transfer) })
     }
 
@@ -120,6 +147,8 @@ impl Kept {
 #[derive(Clone, Default)]
 pub struct KeptList {
     pictures: Vec<Arc<Kept>>,
+    /// The picture of the user's own program, which is checked. It is not in the list.
+    pub mine: Option<Arc<Kept>>,
 }
 
 impl KeptList {
@@ -133,7 +162,7 @@ impl KeptList {
 
     /// The picture of this number.
     pub fn find(&self, number: u64) -> Option<&Arc<Kept>> {
-        self.iter().find(|kept| kept.number == number)
+        self.iter().chain(&self.mine).find(|kept| kept.number == number)
     }
 
     /// As a kept picture is called in sentences.

@@ -3,6 +3,7 @@
 use super::{Device, Document, KeptList, Origin};
 use crate::job::recipe::Recipe;
 use crate::job::render::SamplerKind;
+use crate::progressive::describe::counted;
 use crate::stages::Stage;
 use std::sync::Arc;
 
@@ -25,6 +26,8 @@ pub enum Partner {
     Raw,
     /// The kept picture, or picture of a file, of this number.
     Kept(u64),
+    /// The picture of the user's own program, which is checked.
+    Mine,
 }
 
 impl Partner {
@@ -50,6 +53,10 @@ impl Partner {
                 let short = format!("kept {}", kept.place(found) + 1);
                 [kept.title(found), if found.document.is_some() { short } else { found.name.clone() }]
             }),
+            Partner::Mine => {
+                let name = kept.mine.as_ref().map_or("", |mine| &mine.name);
+                [format!("Yours: {name}"), "yours".to_owned()]
+            }
         }
     }
 
@@ -67,6 +74,7 @@ impl Partner {
             Partner::Sampler(_) => "The same picture with other random numbers",
             Partner::Raw => "The same samples, as they are traced",
             Partner::Kept(_) => "A picture that does not change",
+            Partner::Mine => "The picture of your own program, beside that of its stage",
         }
     }
 
@@ -75,9 +83,10 @@ impl Partner {
         let both = |name: &str| [name.to_owned(), name.to_owned()];
         match self {
             Partner::Device(_) => both(device.label()),
-            Partner::Depth(_) => both(&format!("{} rays", document.settings.max_depth)),
+            Partner::Depth(_) => both(&counted(document.settings.max_depth.into(), "ray")),
             Partner::Sampler(_) => both(sampler_word(document.settings.sampler)),
             Partner::Raw => both("denoised"),
+            Partner::Mine => [format!("Ours: {}", document.title()), "ours".to_owned()],
             Partner::Usual | Partner::Stage(_) | Partner::Book | Partner::Kept(_) => {
                 [document.title(), document.place()]
             }
@@ -95,7 +104,7 @@ impl Partner {
             Partner::Stage(stage) => Some(Arc::new(Origin::of_stage(stage))),
             Partner::Book => Some(Arc::new(mine.origin.by_the_book(&mine.checked))),
             Partner::Device(_) | Partner::Depth(_) | Partner::Sampler(_) => Some(Arc::clone(&mine.origin)),
-            Partner::Usual | Partner::Raw | Partner::Kept(_) => None,
+            Partner::Usual | Partner::Raw | Partner::Kept(_) | Partner::Mine => None,
         }
     }
 

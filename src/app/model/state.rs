@@ -66,7 +66,8 @@ impl Model {
     pub fn note_steps(&mut self, before: &Document) {
         let is_same = Arc::ptr_eq(&self.document.origin, &before.origin);
         let is_moved = is_same && self.playing.is_none() && self.document.camera != before.camera;
-        let done = [is_moved, self.selected.is_some(), !is_same && self.document.stage().is_some()];
+        let is_chosen = self.document.stage().is_some() && self.view.partner != Partner::Mine;
+        let done = [is_moved, self.selected.is_some(), !is_same && is_chosen];
         self.steps_done.iter_mut().zip(done).for_each(|(step, is_done)| *step |= is_done);
     }
 
@@ -110,6 +111,7 @@ impl Model {
             partners
                 .extend(DEPTHS.into_iter().filter(|rays| *rays != settings.max_depth).map(Partner::Depth));
         }
+        partners.extend(self.view.kept.mine.iter().map(|_| Partner::Mine));
         partners.extend(self.view.kept.iter().map(|kept| Partner::Kept(kept.number)));
         partners
     }

@@ -59,7 +59,7 @@ impl ViewState {
     pub fn partner(&self, document: &Document) -> Option<Partner> {
         match self.partner {
             Partner::Usual => Partner::usual(document),
-            Partner::Kept(number) if self.kept.find(number).is_none() => Partner::usual(document),
+            Partner::Kept(_) | Partner::Mine if self.kept_partner().is_none() => Partner::usual(document),
             chosen => Some(chosen),
         }
     }
@@ -69,10 +69,11 @@ impl ViewState {
         self.mode().and_then(|_| self.partner(document))
     }
 
-    /// The kept picture that commands mean.
+    /// The picture that does not change which is compared with.
     pub fn kept_partner(&self) -> Option<&Arc<Kept>> {
         match self.partner {
             Partner::Kept(number) => self.kept.find(number),
+            Partner::Mine => self.kept.mine.as_ref(),
             _ => None,
         }
     }
@@ -149,8 +150,12 @@ impl ViewState {
         }
     }
 
-    /// Another picture is shown, which has its own partner, unless one of another kind is compared with.
+    /// Another picture is shown, which has its own partner, unless one of another kind is compared with. The user's own
+    /// picture is compared with its stage alone.
     pub fn leave_partner(&mut self) {
+        if self.partner == Partner::Mine {
+            self.end_comparison();
+        }
         if self.mode.is_none() || matches!(self.partner, Partner::Stage(_)) {
             self.partner = Partner::Usual;
         }

@@ -3,21 +3,15 @@
 use crate::app::commands::{Command, PanelContext};
 use crate::app::model::{Dock, Partner};
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{About, caption, command_button, command_switch, entry, list, small};
-use crate::measure::grouped;
+use crate::app::toolkit::widgets::{
+    About, caption, command_button, command_switch, entry, list, samples_words, small,
+};
 use crate::stages::Stage;
 use eframe::egui::{Label, RichText, Ui};
 
 /// The partner and the tools.
 pub fn ui(ui: &mut Ui, cx: &PanelContext) {
-    let shown = cx.model.view.partner(cx.document()).map(|partner| cx.model.partner_name(partner));
-    let about = About::new("Compare with", "Another picture, to be wiped, flipped and subtracted");
-    ui.scope(|ui| {
-        ui.spacing_mut().combo_width = ui.available_width() - 100.0;
-        list(ui, about, shown.as_deref().unwrap_or("Choose"), |ui| partners(ui, cx));
-    });
-    tools(ui, cx);
-    // The dock says it beside the speeds.
+    // What grows stands above the buttons, which stay where they are. The dock says it beside the speeds.
     if cx.model.other_device().is_none()
         || cx.model.remembered.dock != Some(Dock::Error)
         || cx.other.is_none()
@@ -27,6 +21,13 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
     if cx.model.view.mode().is_some() && cx.model.not_subtractable().is_some() {
         command_button(ui, cx, Command::RenderAtPartnerSize, "Render at its size");
     }
+    let shown = cx.model.view.partner(cx.document()).map(|partner| cx.model.partner_name(partner));
+    let about = About::new("Compare with", "Another picture, to be wiped, flipped and subtracted");
+    ui.scope(|ui| {
+        ui.spacing_mut().combo_width = ui.available_width() - 100.0;
+        list(ui, about, shown.as_deref().unwrap_or("Choose"), |ui| partners(ui, cx));
+    });
+    tools(ui, cx);
 }
 
 fn partners(ui: &mut Ui, cx: &PanelContext) {
@@ -40,7 +41,6 @@ fn partners(ui: &mut Ui, cx: &PanelContext) {
     for partner in cx.model.partners() {
         choose(ui, Command::CompareWith(partner));
     }
-    choose(ui, Command::CompareMine);
     choose(ui, Command::CompareFile);
     caption(ui, "Another stage");
     let others = Stage::ALL.iter().filter(|stage| cx.document().stage() != Some(stage));
@@ -77,9 +77,9 @@ pub fn verdict(ui: &mut Ui, cx: &PanelContext) {
     }
     let [[_, name], _] = cx.model.side_names();
     match (&cx.other, cx.model.view.compared(cx.document())) {
-        (_, None | Some(Partner::Raw | Partner::Kept(_))) => {}
+        (_, None | Some(Partner::Raw | Partner::Kept(_) | Partner::Mine)) => {}
         (Some(other), _) => {
-            _ = small(ui, format!("{name}: {} samples per pixel", grouped(other.samples_per_pixel)));
+            _ = small(ui, format!("{name}: {}", samples_words(other.samples_per_pixel)));
         }
         (None, Some(_)) => _ = small(ui, format!("{name} is getting ready\u{2026}")),
     }

@@ -120,8 +120,9 @@ fn lens_controls(ui: &mut Ui, camera: &mut Camera, original: f64) {
 
 fn sphere(ui: &mut Ui, document: &mut Document, cx: &PanelContext) {
     let selected = Selected::of(&cx.model);
-    let title =
-        selected.as_ref().map_or("Sphere".to_owned(), |selected| format!("Sphere: {}", selected.material));
+    let title = selected.as_ref().map_or("Sphere".to_owned(), |selected| {
+        format!("Sphere {}: {}", selected.sphere + 1, selected.material)
+    });
     let reset = document.has_changed_scene().then_some("Reset spheres");
     let is_reset = group(ui, Header { title: &title, reset, ..Header::default() }, |ui| {
         let Some(selected) = selected else {
@@ -275,17 +276,17 @@ fn sizing(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx:
     check(ui, About::new("Keep the shape", "Width and height change together"), &mut keeps);
     ui.data_mut(|data| data.insert_temp(place, keeps));
     if size != before {
-        document.give_size(if keeps { in_shape(before, size) } else { size });
+        document.give_size(if keeps { in_shape(before, before, size) } else { size });
     }
 }
 
-/// A size of the shape of `before`, one side of which was changed.
-fn in_shape(before: [u32; 2], size: [u32; 2]) -> [u32; 2] {
+/// A size of this shape; one side of it was changed since `before`.
+pub fn in_shape(shape: [u32; 2], before: [u32; 2], size: [u32; 2]) -> [u32; 2] {
     let axis = usize::from(size[0] == before[0]);
-    let factor = f64::from(size[axis]) / f64::from(before[axis]);
+    let factor = f64::from(size[axis]) / f64::from(shape[axis]);
     // The other side has limits, too.
-    let most = f64::from(SIZE_LIMIT) / f64::from(before[1 - axis]);
-    before.map(|side| ((f64::from(side) * factor.min(most)).round() as u32).max(1))
+    let most = f64::from(SIZE_LIMIT) / f64::from(shape[1 - axis]);
+    shape.map(|side| ((f64::from(side) * factor.min(most)).round() as u32).max(1))
 }
 
 /// A row for a whole number.

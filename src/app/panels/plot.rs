@@ -5,14 +5,12 @@ use super::compare;
 use crate::app::commands::{PanelContext, Snapshot};
 use crate::app::model::Device;
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{compact, hint, small, tip};
-use crate::measure::grouped;
+use crate::app::toolkit::widgets::{compact, hint, samples_words, small, swatch, tip};
 use crate::numbers::statistics::fit::{Point, Prediction, predict};
 use crate::progressive::{HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, Status};
 use eframe::egui::{self, Color32, Rangef, Sense, Sides, Ui, UiBuilder, Vec2b};
 use egui_plot::{
-    AxisHints, Corner, HLine, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints, Points,
-    uniform_grid_spacer,
+    AxisHints, HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, Points, uniform_grid_spacer,
 };
 use std::sync::Arc;
 
@@ -32,9 +30,13 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
         );
         return;
     }
+    let drawn = Drawn::of(ui, cx);
     Sides::new().shrink_left().wrap().show(
         ui,
-        |ui| ui.label("How far the picture still is from the finished one. Four times the samples halve it."),
+        |ui| {
+            ui.label("Four times the samples halve the error.");
+            drawn.names().for_each(|(colour, name)| swatch(ui, colour, name));
+        },
         |ui| {
             let copy = ui.button("Copy");
             if tip(ui, copy, "Copies the points of the curves as a table (CSV)", None).clicked() {
@@ -50,7 +52,7 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
         ui.scope_builder(left, |ui| race.ui(ui, cx));
     }
     let right = UiBuilder::new().max_rect(room.with_min_x(room.left() + width));
-    ui.scope_builder(right, |ui| plot(ui, cx));
+    ui.scope_builder(right, |ui| plot(ui, cx, drawn));
 }
 
 /// Width of the numbers beside the plot, points.
@@ -93,9 +95,8 @@ impl Race {
             let error = status.error.map_or_else(String::new, |error| {
                 format!(", error {} %", compact(two_digits(100.0 * error.rmse)))
             });
-            let samples = grouped(status.samples_per_pixel);
             let seconds = compact(two_digits(status.trace.as_secs_f64()));
-            small(ui, format!("{samples} samples per pixel in {seconds} s{error}"));
+            small(ui, format!("{} in {seconds} s{error}", samples_words(status.samples_per_pixel)));
         }
         match self.factor() {
             Some((device, factor)) => {
@@ -111,39 +112,66 @@ impl Race {
     }
 }
 
-fn plot(ui: &mut Ui, cx: &Snapshot) {
-    let (status, goal) = (&cx.status, cx.document().stop.noise);
-    let &theme::Colours { third: expected, fourth: of_both, .. } = theme::colours(ui);
-    let weak = ui.visuals().weak_text_color();
-    let style = |backend: &str| style(ui, backend);
-    let now = points(status).last().map(at);
-    let mut drawn: Vec<(Color32, String, Vec<[f64; 2]>)> = Vec::new();
-    for (backend, points) in curves(&cx.earlier, None) {
-        drawn.push((style(backend).0.gamma_multiply(0.5), format!("{}, before", style(backend).1), points));
-    }
-    for (backend, points) in curves(&status.history, newest(status)) {
-        drawn.push((style(backend).0, style(backend).1.to_owned(), points));
-    }
-    if let Some(other) = &cx.other {
-        let is_device = cx.model.other_device().is_some();
-        let [[_, name], _] = cx.model.side_names();
-        for (backend, points) in curves(&other.history, newest(other)) {
-            drawn.push((if is_device { style(backend).0 } else { of_both }, name.clone(), points));
+type Curve = (Color32, String, Vec<[f64; 2]>);
+
+/// What is drawn, each with its colour and name.
+struct Drawn {
+    curves: Vec<Curve>,
+    /// From the newest error to the goal.
+    expected: Option<Curve>,
+    /// The error at which the render ends, as [`at`] places it.
+    goal: Option<(Color32, String, f64)>,
+}
+
+impl Drawn {
+    fn of(ui: &Ui, cx: &Snapshot) -> Self {
+        let (status, goal) = (&cx.status, cx.document().stop.noise);
+        let &theme::Colours { third, fourth: of_both, weak, .. } = theme::colours(ui);
+        let style = |backend: &str| style(ui, backend);
+        let mut drawn: Vec<Curve> = Vec::new();
+        for (backend, points) in curves(&cx.earlier, None) {
+            let name = format!("{}, before", style(backend).1);
+            drawn.push((style(backend).0.gamma_multiply(0.5), name, points));
         }
+        for (backend, points) in curves(&status.history, newest(status)) {
+            drawn.push((style(backend).0, style(backend).1.to_owned(), points));
+        }
+        if let Some(other) = &cx.other {
+            let is_device = cx.model.other_device().is_some();
+            let [[_, name], _] = cx.model.side_names();
+            for (backend, points) in curves(&other.history, newest(other)) {
+                drawn.push((if is_device { style(backend).0 } else { of_both }, name.clone(), points));
+            }
+        }
+        let now = points(status).last().map(at);
+        let expected = prediction(status, goal).zip(now).zip(goal).map(|((ahead, [x, y]), goal)| {
+            let seconds = 10_f64.powf(x) + ahead.time.min(FARTHEST);
+            let line = vec![[x, y], at(&Point { time: seconds, error: goal })];
+            (third, "expected".to_owned(), line)
+        });
+        let goal = goal.map(|goal| {
+            let percent = 100.0 * goal;
+            (weak, format!("goal {} %", compact(two_digits(percent))), percent.log10())
+        });
+        Drawn { curves: drawn, expected, goal }
     }
-    // From the newest error to the goal.
-    let ahead = prediction(status, goal).zip(now).zip(goal).map(|((ahead, [x, y]), goal)| {
-        let seconds = 10_f64.powf(x) + ahead.time.min(FARTHEST);
-        vec![[x, y], at(&Point { time: seconds, error: goal })]
-    });
+
+    /// The legend. A backend that took turns has several curves and one name.
+    fn names(&self) -> impl Iterator<Item = (Color32, &str)> {
+        let first =
+            |place: &usize| self.curves[..*place].iter().all(|(_, name, _)| *name != self.curves[*place].1);
+        let curves = (0..self.curves.len()).filter(first).map(|place| &self.curves[place]);
+        let curves = curves.chain(&self.expected).map(|(colour, name, _)| (*colour, name.as_str()));
+        curves.chain(self.goal.iter().map(|(colour, name, _)| (*colour, name.as_str())))
+    }
+}
+
+fn plot(ui: &mut Ui, cx: &Snapshot, Drawn { curves, expected, goal }: Drawn) {
+    let status = &cx.status;
     let axis = |hints: AxisHints<'static>, name: &str| {
         hints.label(egui::RichText::new(name).small()).formatter(|mark, _| power(mark.value))
     };
-    let plot = Plot::new("error");
-    // The numbers of two devices have the colours of their curves.
-    let is_named = Race::of(cx).is_some();
-    let plot = if is_named { plot } else { plot.legend(Legend::default().position(Corner::RightTop)) };
-    let plot = plot
+    let plot = Plot::new("error")
         .allow_drag(false)
         .allow_zoom(Vec2b::FALSE)
         .allow_scroll(false)
@@ -153,33 +181,32 @@ fn plot(ui: &mut Ui, cx: &Snapshot) {
         .set_margin_fraction(egui::vec2(0.03, 0.12))
         .custom_x_axes(vec![axis(AxisHints::new_x(), "seconds")])
         .custom_y_axes(vec![
-            axis(AxisHints::new_y(), "error, % of white").label_spacing(Rangef { min: 8.0, max: 14.0 }),
+            axis(AxisHints::new_y(), "error, %").label_spacing(Rangef { min: 8.0, max: 14.0 }),
         ])
         .x_grid_spacer(uniform_grid_spacer(|_| [1.0, 1.0, 1.0]))
         .y_grid_spacer(uniform_grid_spacer(|_| [1.0, 1.0, 1.0]))
         .grid_color(theme::colours(ui).line)
         .label_formatter(|hover| {
-            let (HoverPosition::NearDataPoint { position: place, .. }
-            | HoverPosition::Elsewhere { position: place }) = hover;
+            // Beside the curves there is nothing to tell.
+            let HoverPosition::NearDataPoint { position: place, .. } = hover else { return None };
             let place = [place.x, place.y];
             let other = cx.other.iter().flat_map(|other| &other.history);
             let point = status.history.iter().chain(other).find(|point| of_history(point) == place);
             let samples = point
-                .map_or_else(String::new, |point| format!("{} samples per pixel\n", point.samples_per_pixel));
+                .map_or_else(String::new, |point| format!("{}\n", samples_words(point.samples_per_pixel)));
             let [seconds, error] = place.map(|power| compact(10_f64.powf(power)));
             Some(format!("{samples}{seconds} s\nerror {error} %"))
         });
     plot.show(ui, |plot| {
-        if let Some(goal) = goal {
-            let name = format!("goal {} %", compact(two_digits(100.0 * goal)));
-            let line = HLine::new(name, (100.0 * goal).log10()).color(weak);
+        if let Some((colour, name, height)) = goal {
+            let line = HLine::new(name, height).color(colour);
             plot.hline(line.style(LineStyle::dashed_loose()).allow_hover(false));
         }
-        if let Some(ahead) = ahead {
-            let line = Line::new("expected", PlotPoints::from(ahead)).color(expected);
+        if let Some((colour, name, points)) = expected {
+            let line = Line::new(name, PlotPoints::from(points)).color(colour);
             plot.line(line.style(LineStyle::dashed_dense()).width(1.5).allow_hover(false));
         }
-        for (colour, name, points) in drawn {
+        for (colour, name, points) in curves {
             plot.points(Points::new(name.clone(), points.clone()).color(colour).radius(2.5));
             plot.line(Line::new(name, points).color(colour).width(1.5));
         }

@@ -24,8 +24,9 @@ fn unit(context: &Context) -> f32 {
     (size.y / 100.0).min(size.x / 133.0).max(1.0)
 }
 
-/// Draws everything except the picture, which gets the room that is left.
-pub fn ui(ui: &mut Ui, cx: &PanelContext) {
+/// Draws everything except the picture, which gets the room that is left. The numbers of the pixel under the pointer stand
+/// in place of a text.
+pub fn ui(ui: &mut Ui, cx: &PanelContext, numbers: Option<impl FnOnce(&mut Ui)>) {
     let unit = unit(ui.ctx());
     let words = status::sentence(cx);
     let is_done = matches!(cx.status.phase, Phase::Done(_));
@@ -49,7 +50,7 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
         });
     });
     if let Some(texts) = texts(cx) {
-        bottom("present texts", 16.0 * unit, margin).show(ui, |ui| columns(ui, unit, texts));
+        bottom("present texts", 16.0 * unit, margin).show(ui, |ui| columns(ui, unit, texts, numbers));
     }
     let title_bar = Panel::top("present title").exact_size(9.0 * unit).show_separator_line(false);
     title_bar.frame(frame(margin)).show(ui, |ui| ui.horizontal_centered(|ui| title(ui, unit, cx)));
@@ -142,6 +143,12 @@ fn title(ui: &mut Ui, unit: f32, snapshot: &Snapshot) {
     Sides::new().height(ui.available_height()).shrink_left().show(ui, left, right);
 }
 
+/// Whether texts stand below the picture.
+pub fn has_texts(snapshot: &Snapshot) -> bool {
+    let has_captions = snapshot.model.presentation.is_some_and(|presentation| presentation.has_captions);
+    has_captions && texts(snapshot).is_some()
+}
+
 /// The headings and texts below the picture.
 fn texts(snapshot: &Snapshot) -> Option<[(&'static str, &'static str); 2]> {
     let (stage, case) = (snapshot.document().stage(), snapshot.document().case());
@@ -154,7 +161,7 @@ fn texts(snapshot: &Snapshot) -> Option<[(&'static str, &'static str); 2]> {
 }
 
 /// Two texts side by side, as large as both have room.
-fn columns(ui: &mut Ui, unit: f32, texts: [(&str, &str); 2]) {
+fn columns(ui: &mut Ui, unit: f32, texts: [(&str, &str); 2], mut numbers: Option<impl FnOnce(&mut Ui)>) {
     let (gap, heading) = (MARGIN * unit, 2.0 * unit);
     let width = 0.5 * (ui.available_width() - gap);
     let room = ui.available_height() - 2.5 * heading;
@@ -165,11 +172,20 @@ fn columns(ui: &mut Ui, unit: f32, texts: [(&str, &str); 2]) {
     let fits = |size: &f32| texts.iter().all(|(_, text)| height(text, *size) <= room);
     let size = SIZES.map(|size| size * unit).into_iter().find(fits).unwrap_or(SIZES[4] * unit);
     ui.spacing_mut().item_spacing = vec2(gap, 0.2 * heading);
-    ui.add_space(heading);
+    ui.add_space(0.5 * heading);
+    let rows = ui.available_height();
     ui.horizontal_top(|ui| {
-        for (name, text) in texts {
+        for (place, (name, text)) in texts.into_iter().enumerate() {
             ui.vertical(|ui| {
                 ui.set_width(width);
+                if let Some(numbers) = numbers.take_if(|_| place == 1) {
+                    enlarge(&ui.ctx().clone(), ui.style_mut());
+                    // Under their header, four rows of a line and a third have room.
+                    let most = (rows - 28.0) / (4.0 * 4.0 / 3.0);
+                    let small = ui.style_mut().text_styles.get_mut(&TextStyle::Small);
+                    small.into_iter().for_each(|font| font.size = font.size.min(most));
+                    return numbers(ui);
+                }
                 ui.label(RichText::new(name).size(heading).color(theme::colours(ui).accent));
                 ui.add(Label::new(RichText::new(text).size(size).color(theme::colours(ui).strong)).wrap());
             });

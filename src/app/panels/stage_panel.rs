@@ -4,6 +4,7 @@ use crate::app::commands::{Command, PanelContext};
 use crate::app::model::{Document, Source};
 use crate::app::toolkit::widgets::{add_command, command_button, hint, primary, small};
 use crate::measure::stress::Case;
+use crate::progressive::describe::counted;
 use crate::stages::Stage;
 use eframe::egui::{Label, Link, RichText, Ui};
 
@@ -79,8 +80,9 @@ fn show_me(ui: &mut Ui, stage: &Stage, cx: &PanelContext) {
 /// Text about a scene that is not a stage.
 fn recipe_ui(ui: &mut Ui, document: &Document) {
     let scene = document.scene();
-    let (spheres, materials) = (scene.spheres.len(), scene.materials.len());
-    title(ui, &format!("{spheres} spheres, {materials} materials"), &document.heading());
+    let spheres = counted(scene.spheres.len() as u64, "sphere");
+    let materials = counted(scene.materials.len() as u64, "material");
+    title(ui, &format!("{spheres}, {materials}"), &document.heading());
     if document.origin.source == Source::New {
         paragraph(ui, "To begin with", NEW);
     }

@@ -4,11 +4,12 @@ use super::plot::prediction;
 use crate::app::commands::{Command, PanelContext, Snapshot};
 use crate::app::model::spheres;
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{command_button, compact, small, tip};
+use crate::app::toolkit::widgets::{command_button, compact, samples_words, small, tip};
 use crate::denoise::DenoisedError;
 use crate::film::Film;
 use crate::job::render::BackendInfo;
 use crate::measure::grouped;
+use crate::progressive::describe::counted;
 use crate::progressive::{EndReason, Phase, Status};
 use eframe::egui::{
     self, Align, Button, Id, Label, Layout, Margin, PopupCloseBehavior, RectAlign, Response, RichText, Sides,
@@ -87,7 +88,7 @@ fn announce(response: &Response, sentence: &str) {
 
 fn left_out(ui: &mut Ui, count: u64) {
     if count > 0 {
-        let words = format!("{} samples were left out", grouped(count));
+        let words = format!("{} left out", counted(count, "sample"));
         let response = ui.label(RichText::new(words).color(theme::colours(ui).warn));
         tip(ui, response, "They were not numbers, so they would spoil their pixels", None);
     }
@@ -104,12 +105,8 @@ pub fn sentence(snapshot: &Snapshot) -> String {
         let [[title, _], _] = snapshot.model.side_names();
         let kept = view.kept_partner().filter(|kept| kept.document.is_some()).map(|kept| kept.samples());
         let samples = kept.or(snapshot.other.as_ref().map(|other| other.samples_per_pixel));
-        let samples =
-            samples.map_or_else(String::new, |count| format!(", {} samples per pixel", grouped(count)));
+        let samples = samples.map_or_else(String::new, |count| format!(", {}", samples_words(count)));
         return format!("{title}{samples}. Escape returns to the picture");
-    }
-    if let Some(checked) = &snapshot.checked {
-        return checked.clone();
     }
     let count = status.samples_per_pixel;
     let raw = status.error.map(|raw| percent(raw.rmse, raw.rmse_deviation));
@@ -125,7 +122,7 @@ pub fn sentence(snapshot: &Snapshot) -> String {
         (Some(raw), None) => format!(", error {raw}"),
         (None, _) => String::new(),
     };
-    let samples = format!("{} samples per pixel", grouped(count));
+    let samples = samples_words(count);
     match &status.phase {
         Phase::Failed(reason) => format!("Stopped at {samples}: {reason}"),
         _ if let Some(play) = &snapshot.model.playing => {
@@ -135,7 +132,7 @@ pub fn sentence(snapshot: &Snapshot) -> String {
         _ if (snapshot.is_coarse || count == 0) && snapshot.has_picture => "Refining".to_owned(),
         _ if snapshot.is_coarse || count == 0 => "Starting".to_owned(),
         _ if snapshot.model.is_paused && snapshot.is_held => {
-            format!("Paused; the picture has moved, and {count} samples show it")
+            format!("Paused; the picture has moved and has {samples}")
         }
         _ if snapshot.model.is_paused => format!("Paused at {samples}{error}"),
         Phase::Done(_) if !snapshot.document().is_random() => {
@@ -152,7 +149,7 @@ pub fn sentence(snapshot: &Snapshot) -> String {
             Some(end) => {
                 let per_sample = status.trace.as_secs_f64() / count as f64;
                 let left = time(per_sample * end.saturating_sub(count) as f64);
-                let samples = format!("{} of {} samples per pixel", grouped(count), grouped(end));
+                let samples = format!("{} of {}", grouped(count), samples_words(end));
                 format!("{samples}{error}; done in about {left}")
             }
             None => format!("{samples}{error}{}", ending(snapshot)),
@@ -258,10 +255,11 @@ fn processors(status: &Status) -> Option<String> {
 fn processor(BackendInfo { name, device, threads, .. }: &BackendInfo) -> String {
     // Without the adapter's driver.
     let device = device.split(" (").next().unwrap_or_default();
+    let threads = || counted(*threads as u64, "thread");
     match *name {
         "gpu" => format!("GPU, {device}"),
-        "cpu" => format!("CPU, {threads} threads, {device}"),
-        name => format!("{name}, {threads} threads, {device}"),
+        "cpu" => format!("CPU, {}, {device}", threads()),
+        name => format!("{name}, {}, {device}", threads()),
     }
 }
 
@@ -324,7 +322,7 @@ mod tests {
         assert_eq!(sentence(&snapshot), "A coarse picture while you move");
         snapshot.is_coarse = false;
         (snapshot.model.is_paused, snapshot.is_held) = (true, true);
-        assert_eq!(sentence(&snapshot), "Paused; the picture has moved, and 100 samples show it");
+        assert_eq!(sentence(&snapshot), "Paused; the picture has moved and has 100 samples per pixel");
         (snapshot.model.is_paused, snapshot.is_held) = (false, false);
         snapshot.status = Arc::new(Status { phase: Phase::Done(EndReason::NoiseTarget), ..status });
         assert!(

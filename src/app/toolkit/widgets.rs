@@ -2,6 +2,7 @@
 
 use super::theme;
 use crate::app::commands::{Command, PanelContext};
+use crate::measure::grouped;
 use eframe::egui::collapsing_header::{CollapsingState, paint_default_icon};
 use eframe::egui::{
     self, Align, Atom, Button, Color32, ComboBox, CornerRadius, DragValue, Id, IntoAtoms, Key, Label, Layout,
@@ -88,11 +89,13 @@ pub fn tip(ui: &Ui, response: Response, help: &str, disabled_reason: Option<&str
 fn show_tip(ui: &Ui, response: &Response, text: &str) {
     const BESIDE: &[RectAlign] =
         &[RectAlign::RIGHT_START, RectAlign::LEFT_START, RectAlign::RIGHT_END, RectAlign::LEFT_END];
+    /// Anything narrower is a column, points.
+    const COLUMN: f32 = 450.0;
     const BELOW: &[RectAlign] =
         &[RectAlign::BOTTOM_START, RectAlign::BOTTOM_END, RectAlign::TOP_START, RectAlign::TOP_END];
     let clip = ui.clip_rect();
     let is_menu = ui.layout().horizontal_justify();
-    let is_panel = !is_menu && clip.height() > clip.width();
+    let is_panel = !is_menu && clip.width() < COLUMN;
     let around = match is_panel {
         true => Rect::from_x_y_ranges(clip.x_range(), response.rect.y_range()),
         false => response.rect,
@@ -508,6 +511,11 @@ fn rounded(n: f64, scale: f64, digits: i32) -> f64 {
     if rounded.is_finite() { rounded } else { n }
 }
 
+/// A number of samples, in words.
+pub fn samples_words(count: u64) -> String {
+    format!("{} sample{} per pixel", grouped(count), if count == 1 { "" } else { "s" })
+}
+
 /// A point in few characters, as in `13, 2, 3`.
 pub fn point_words(point: DVec3) -> String {
     let scale = point.abs().max_element();
@@ -634,7 +642,7 @@ pub fn sign_button(ui: &mut Ui, sign: &str, size: f32, name: &str) -> Response {
 pub fn swatch(ui: &mut Ui, colour: Color32, name: &str) {
     let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
     ui.painter().rect_filled(rect, 2, colour);
-    small(ui, name);
+    ui.add(Label::new(RichText::new(name).small().color(ui.visuals().weak_text_color())).extend());
 }
 
 #[cfg(test)]
@@ -658,6 +666,7 @@ mod tests {
         }
         assert_eq!(point_words(DVec3::new(12.974, 2.08e-17, -3.0)), "13, 0, −3");
         assert_eq!(point_words(DVec3::ZERO), "0, 0, 0");
+        assert_eq!([1, 2].map(samples_words), ["1 sample per pixel", "2 samples per pixel"]);
         let number = Number::new(About::new("", ""), -9.0..=9.0);
         assert_eq!([-0.695_65, 2.087_12].map(|n| number.text(n)), ["−0.6957", "2.0871"]);
         let beside = Number { scale: 2.0, ..number.letter("x ") };

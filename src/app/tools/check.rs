@@ -1,24 +1,18 @@
 //! A picture of another program: what is wrong with it, and where.
 
-use super::inspector;
 use crate::app::commands::{Command, PanelContext};
-use crate::app::model::{Mode, Remembered, Tab};
-use crate::app::panels::right::scrolling;
+use crate::app::model::{Kept, Partner, Remembered, Tab};
+use crate::app::panels::compare;
+use crate::app::panels::right::{foot, scrolling};
 use crate::app::panels::stage_panel::paragraph;
 use crate::app::toolkit::widgets::{
-    About, Header, command_button, entry, fold, hint, list, panel_line, primary, small, switch, tip,
+    About, Header, command_button, entry, fold, hint, list, panel_line, primary, small, tip,
 };
-use crate::app::toolkit::{Answers, Texture, caught, overlay, theme};
-use crate::comparison::check::{
-    Answer, AnswerKind, Damage, Finding, Mine, POLL_INTERVAL, Watched, judge, pictures,
-};
-use crate::numbers::heat::HeatScale;
+use crate::app::toolkit::{Answers, caught, theme};
+use crate::comparison::check::{Answer, AnswerKind, Damage, Finding, Mine, POLL_INTERVAL, Watched, judge};
 use crate::stages::Stage;
 use eframe::egui::text::LayoutJob;
-use eframe::egui::{
-    self, Align, Align2, Color32, FontSelection, Label, Rect, RichText, Sense, Stroke, StrokeKind,
-    TextureOptions, Ui, Vec2, WidgetInfo, vec2,
-};
+use eframe::egui::{self, Align, FontSelection, Label, RichText, Ui};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{Builder, sleep};
@@ -28,19 +22,18 @@ pub struct Checked {
     pub answer: Answer,
     /// Rows of the file so far, and of the picture.
     rows: [u32; 2],
-    /// The size, and mine, ours and the difference, if the picture could be compared.
-    compared: Option<([u32; 2], [Texture; 3])>,
+    /// The picture of the file, if it could be compared with that of its stage.
+    compared: Option<(&'static Stage, Arc<Kept>)>,
 }
 
 impl Checked {
-    fn of(found: anyhow::Result<(Mine, Finding)>) -> Self {
+    fn of(found: anyhow::Result<(Mine, Finding)>, context: &egui::Context, name: String) -> Self {
         match found {
             Ok((mine, finding)) => {
-                let size = [mine.width, mine.height];
-                let views =
-                    pictures(&mine, &finding).map(|rgb8| Texture::new(size, rgb8.as_flattened(), None));
-                let rows = [mine.rows, mine.height];
-                Checked { answer: finding.answer(&mine), rows, compared: Some((size, views)) }
+                let (stage, rows) = (finding.stage, [mine.rows, mine.height]);
+                let kept = Kept::of_mine(context, name, &mine, stage.recipe().rules.transfer);
+                let compared = kept.ok().map(|kept| (stage, Arc::new(kept)));
+                Checked { answer: finding.answer(&mine), rows, compared }
             }
             Err(reason) => Checked { answer: Answer::cannot_check(&reason), rows: [0; 2], compared: None },
         }
@@ -54,21 +47,15 @@ pub struct Check {
     path: Option<PathBuf>,
     /// The stage that the user has chosen for it.
     chosen: Option<&'static Stage>,
-    /// What is being tried.
-    trying: Arc<Mutex<String>>,
+    /// What is being tried; `None` between two checks.
+    trying: Arc<Mutex<Option<String>>>,
     pub shown: Option<Checked>,
-    /// Something is to be shown that was not there before.
+    /// The user has begun a check.
     has_news: bool,
     /// The picture of the last window was looked for.
     has_resumed: bool,
-    /// How the two pictures are shown; ours alone without a mode.
-    mode: Option<Mode>,
-    divider: f32,
     /// The number of the place that is shown enlarged.
-    place: Option<usize>,
-    /// The pixel under the pointer, and whether it is one of the user's picture.
-    hovered: Option<[u32; 2]>,
-    is_over_yours: bool,
+    pub place: Option<usize>,
     answers: Answers<Checked>,
 }
 
@@ -76,35 +63,41 @@ impl Check {
     /// Checks a picture until it is closed; it is one of `stage` if that is known.
     pub fn begin(&mut self, context: &egui::Context, path: &Path, stage: Option<&'static Stage>) {
         self.close();
+        (self.path, self.chosen, self.has_news) = (Some(path.to_owned()), stage, true);
         let (answer, mut watched) = (self.answers.promise(context), Watched::new(path));
-        self.trying = Arc::new(Mutex::new("reading it".to_owned()));
-        let (trying, window) = (Arc::clone(&self.trying), context.clone());
+        self.trying = Arc::new(Mutex::new(Some("reading it".to_owned())));
+        let (trying, window, name) = (Arc::clone(&self.trying), context.clone(), self.name());
         let say = move |what| {
             *trying.lock().unwrap_or_else(PoisonError::into_inner) = what;
             window.request_repaint();
         };
+        let context = context.clone();
         let watch = move || {
             let outcome = caught(|| {
                 while answer.is_wanted() {
-                    let found = watched.judged(|mine| judge(mine, stage, &say));
+                    let found = watched.judged(|mine| {
+                        say(Some("the right picture".to_owned()));
+                        judge(mine, stage, |what| say(Some(what)))
+                    });
                     if let Some(found) = found {
-                        answer.give(Ok(Checked::of(found)));
+                        say(None);
+                        answer.give(Ok(Checked::of(found, &context, name.clone())));
                     }
                     sleep(POLL_INTERVAL);
                 }
             });
             if let Err(reason) = outcome {
+                say(None);
                 answer.give(Err(reason));
             }
         };
         // Without a thread, the answer is dropped, which gives an error.
         let _ = Builder::new().name("check".to_owned()).spawn(watch);
-        (self.path, self.chosen, self.has_news) = (Some(path.to_owned()), stage, true);
-        (self.mode, self.divider, self.place, self.hovered) = (Some(Mode::Wipe), 0.5, None, None);
     }
 
-    /// Takes answers, and opens their tab when they are about another picture. Resumes the check of the last window.
-    pub fn follow(&mut self, context: &egui::Context, remembered: &mut Remembered) {
+    /// Takes answers; returns whether there was one. Opens the tab of a check that was begun, and resumes that of the last
+    /// window.
+    pub fn follow(&mut self, context: &egui::Context, remembered: &mut Remembered) -> bool {
         if !std::mem::replace(&mut self.has_resumed, true)
             && self.path.is_none()
             && let Some(path) = remembered.mine.take().filter(|path| path.exists())
@@ -113,8 +106,11 @@ impl Check {
             self.begin(context, &path, stage);
             self.has_news = false;
         }
+        let mut is_answered = false;
         while let Some(outcome) = self.answers.take() {
-            let checked = outcome.unwrap_or_else(|reason| Checked::of(Err(anyhow::Error::msg(reason))));
+            is_answered = true;
+            let checked = outcome
+                .unwrap_or_else(|reason| Checked::of(Err(anyhow::Error::msg(reason)), context, self.name()));
             let is_first = self.shown.is_none();
             if let Some(path) = self.path.as_ref().filter(|_| is_first && checked.compared.is_some()) {
                 remembered.note_recent(path);
@@ -134,18 +130,29 @@ impl Check {
         if std::mem::take(&mut self.has_news) {
             (remembered.has_info, remembered.tab) = (true, Tab::Check);
         }
+        is_answered
     }
 
-    /// A description of the checked picture.
-    pub fn words(&self) -> Option<String> {
-        let ([width, height], _) = self.shown.as_ref()?.compared.as_ref()?;
-        Some(format!("Checked {}, {width} × {height} pixels", self.name()))
+    /// The stage and the picture that are compared, if the check knows them.
+    pub fn found(&self) -> Option<(&'static Stage, &Arc<Kept>)> {
+        let (stage, kept) = self.shown.as_ref()?.compared.as_ref()?;
+        Some((*stage, kept))
     }
 
-    /// The stage and the size of the checked picture, if the check knows them.
-    pub fn found(&self) -> Option<(&'static Stage, [u32; 2])> {
-        let Checked { answer, compared, .. } = self.shown.as_ref()?;
-        Some((answer.stage?, compared.as_ref()?.0))
+    /// Where the two differ most, if they do.
+    pub fn places(&self) -> &[[u32; 2]] {
+        self.shown.as_ref().map_or(&[], |shown| &shown.answer.places)
+    }
+
+    /// The part of the picture around the next place, as shares of its width and height.
+    pub fn next_place(&mut self) -> Option<[f64; 4]> {
+        /// From the place to the edges of the part.
+        const REACH: f64 = 0.125;
+        let next = self.place.map_or(0, |place| (place + 1) % self.places().len().max(1));
+        let (at, size) = (*self.places().get(next)?, self.found()?.1.size());
+        self.place = Some(next);
+        let [x, y] = [0, 1].map(|axis| (f64::from(at[axis]) + 0.5) / f64::from(size[axis]));
+        Some([x - REACH, y - REACH, x + REACH, y + REACH])
     }
 
     /// Whether an answer is shown or awaited.
@@ -155,95 +162,36 @@ impl Check {
 
     /// Closes the answer. One that is awaited is not shown.
     pub fn close(&mut self) {
-        self.answers = Answers::default();
-        (self.path, self.chosen, self.shown) = (None, None, None);
+        *self = Check { has_resumed: self.has_resumed, ..Check::default() };
     }
 
-    fn name(&self) -> String {
+    /// The name of the picture; empty without one.
+    pub fn name(&self) -> String {
         let name = self.path.as_deref().and_then(Path::file_name);
         name.map_or_else(String::new, |name| name.display().to_string())
     }
 
-    /// Draws the answer, or that it is awaited.
-    pub fn ui(&mut self, ui: &mut Ui, cx: &PanelContext) {
-        let name = self.name();
-        let Some(Checked { answer, rows: [rows, height], compared }) = &self.shown else {
-            scrolling(ui, |ui| {
-                let what = self.chosen.map_or("every section", |stage| stage.section);
-                hint(ui, &format!("Comparing {name} with {what} and the known mistakes…"));
-                let trying = self.trying.lock().unwrap_or_else(PoisonError::into_inner).clone();
-                hint(ui, &format!("Now: {trying}."));
-                ui.horizontal(|ui| {
-                    if ui.button("Stop").clicked() {
-                        self.close();
-                    }
-                    ui.spinner();
-                });
-            });
-            return;
-        };
+    /// Draws the answer, or that it is awaited; `numbers` draws those of the pixel under the pointer.
+    pub fn ui(&mut self, ui: &mut Ui, cx: &PanelContext, numbers: impl FnOnce(&mut Ui)) {
         let (mut is_closed, mut of_section) = (false, None);
-        crate::app::panels::right::foot(ui, |ui| {
+        foot(ui, |ui| {
             ui.horizontal(|ui| {
                 ui.set_height(32.0);
-                is_closed = ui.button("Close").clicked();
+                let word = if self.shown.is_some() { "Close" } else { "Stop" };
+                is_closed = ui.button(word).clicked();
                 if ui.button("Another picture…").clicked() {
                     cx.send(Command::CheckPicture);
                 }
             });
-            numbers(ui, self.hovered, compared.as_ref(), self.is_over_yours, self.mode);
+            if self.found().is_some() {
+                numbers(ui);
+            }
         });
         scrolling(ui, |ui| {
-            verdict(ui, answer);
-            if rows < height {
-                hint(
-                    ui,
-                    &format!("This is about the first {rows} of {height} rows. The others are awaited."),
-                );
-            }
-            if let Some(remedy) = &answer.remedy {
-                change(ui, remedy);
-            }
-            for Damage { title, remedy } in &answer.damages {
-                paragraph(ui, "The file, too", &format!("{title}: {remedy}."));
-            }
-            links(ui, answer, cx);
-            of_section = section(ui, answer, self.chosen);
-            hint(ui, &format!("{name} is checked again whenever it changes."));
-            if compared.is_some() {
-                ui.add_space(4.0);
-                small(ui, "Compare");
-                let sides = [
-                    (Some(Mode::Flip), About::new("Yours", "Your picture")),
-                    (Some(Mode::Wipe), About::new("Wipe", "Drag a divider between the two")),
-                    (None, About::new("Ours", "The same stage by Weekender")),
-                    (
-                        Some(Mode::Difference),
-                        About::new("Difference", "Where the two differ, and by how much"),
-                    ),
-                ];
-                self.mode = switch(ui, 0.0, self.mode, &sides).unwrap_or(self.mode);
-                let next = self.place.map_or(0, |place| (place + 1) % answer.places.len().max(1));
-                let words = if self.place.is_none() { "Show where" } else { "Next place" };
-                ui.horizontal(|ui| {
-                    if !answer.places.is_empty() && ui.button(words).clicked() {
-                        (self.place, self.divider) = (Some(next), f32::NAN);
-                    }
-                    if self.place.is_some() && ui.button("Whole picture").clicked() {
-                        (self.place, self.divider) = (None, 0.5);
-                    }
-                    command_button(ui, cx, Command::CompareMine, "With paths and zoom");
-                });
-                if answer.evidence.is_empty() {
-                    return;
-                }
-                ui.add_space(8.0);
-                panel_line(ui);
-                fold(ui, Header { title: "Figures", ..Header::default() }, false, |ui| {
-                    for line in &answer.evidence {
-                        hint(ui, &format!("{line}."));
-                    }
-                });
+            self.progress(ui);
+            if let Some(shown) = &self.shown {
+                of_section = shown.ui(ui, cx, self.chosen, self.place);
+                hint(ui, &format!("{} is checked again whenever it changes.", self.name()));
             }
         });
         if let Some((path, stage)) = self.path.clone().zip(of_section) {
@@ -253,106 +201,75 @@ impl Check {
         }
     }
 
-    /// Draws the two pictures in the middle of the window, in place of the traced one. Returns the room; `None` without pictures.
-    pub fn picture(&mut self, ui: &mut Ui) -> Option<Rect> {
-        let Checked { answer, compared, .. } = self.shown.as_ref()?;
-        let (pixels, [yours, ours, difference]) = compared.as_ref()?;
-        let room = ui.available_rect_before_wrap();
-        let size = vec2(pixels[0] as f32, pixels[1] as f32);
-        let fitting = ((room.size() - Vec2::splat(16.0)) / size).min_elem().max(0.0);
-        let place = self.place.and_then(|place| answer.places.get(place));
-        let share = place.map_or(Vec2::splat(0.5), |[x, y]| vec2(*x as f32, *y as f32) / size);
-        let scale = if place.is_some() { (4.0 * fitting).max(8.0) } else { fitting };
-        let rect = Rect::from_min_size(room.center() - share * size * scale, size * scale);
-        if self.divider.is_nan() {
-            self.divider = share.x;
-        }
-        let response = ui.allocate_rect(room, Sense::drag());
-        response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Your picture and ours"));
-        let painter = ui.painter().with_clip_rect(room);
-        painter.rect_filled(room, 0, theme::colours(ui).surround);
-        let options = if scale < 4.0 { TextureOptions::LINEAR } else { TextureOptions::NEAREST };
-        let whole = match self.mode {
-            Some(Mode::Flip) => yours,
-            Some(Mode::Wipe) | None => ours,
-            Some(Mode::Difference) => difference,
+    /// What is being tried, also when the picture is checked again.
+    fn progress(&self, ui: &mut Ui) {
+        let trying = self.trying.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let Some(trying) = trying else { return };
+        let name = self.name();
+        let what = self.chosen.map_or("every section", |stage| stage.section);
+        let words = match &self.shown {
+            Some(_) => format!("{name} has changed and is checked again. Now: {trying}."),
+            None => format!("Comparing {name} with {what} and the known mistakes. Now: {trying}."),
         };
-        painter.image(whole.id(ui.ctx(), options), rect, overlay::WHOLE, Color32::WHITE);
-        let seen = rect.intersect(room);
-        let your_title = format!("Yours: {}", self.name());
-        let our_title = match answer.stage {
-            Some(stage) => format!("Ours: {} {}", stage.section, stage.title),
-            None => "Ours".to_owned(),
-        };
-        match self.mode {
-            Some(Mode::Wipe) => {
-                if let Some(pointer) = response.interact_pointer_pos() {
-                    self.divider = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
-                }
-                let left = (yours.id(ui.ctx(), options), rect);
-                overlay::wipe(ui, &painter, rect, self.divider, left, [&your_title, &our_title]);
-            }
-            Some(Mode::Flip) => overlay::title(ui, &painter, seen, Align2::LEFT_TOP, &your_title),
-            None => overlay::title(ui, &painter, seen, Align2::RIGHT_TOP, &our_title),
-            Some(Mode::Difference) => {
-                let words = format!("Difference: {}", self.name());
-                overlay::title(ui, &painter, seen, Align2::LEFT_TOP, &words);
-                overlay::legend(ui, &painter, seen, &HeatScale::DISPLAYED);
-            }
-        }
-        for [x, y] in &answer.places {
-            let middle = rect.min + vec2(*x as f32, *y as f32) * scale;
-            let mark = Rect::from_center_size(middle, Vec2::splat(10.0 * scale));
-            for (width, colour) in [(3.0, Color32::from_black_alpha(140)), (1.0, Color32::WHITE)] {
-                painter.rect_stroke(mark, 2.0, Stroke::new(width, colour), StrokeKind::Outside);
-            }
-        }
-        if let Some(at) = response.hover_pos().filter(|at| rect.contains(*at)) {
-            let place = (at - rect.min) / rect.size();
-            let pixel = |share: f32, side: u32| ((share * side as f32) as u32).min(side - 1);
-            self.hovered = Some([pixel(place.x, pixels[0]), pixel(place.y, pixels[1])]);
-            let is_left = self.mode == Some(Mode::Wipe) && place.x < self.divider;
-            self.is_over_yours = is_left || self.mode == Some(Mode::Flip);
-        }
-        Some(room)
+        ui.horizontal_top(|ui| {
+            ui.spinner();
+            hint(ui, &words);
+        });
     }
 }
 
-/// The bytes of both pictures under the pointer.
-fn numbers(
-    ui: &mut Ui,
-    at: Option<[u32; 2]>,
-    pictures: Option<&([u32; 2], [Texture; 3])>,
-    is_yours: bool,
-    mode: Option<Mode>,
-) {
-    let Some((_, [yours, ours, _])) = pictures else { return };
-    let found = at.and_then(|at| Some((at, yours.colour(at)?, ours.colour(at)?)));
-    inspector::frame(ui, found.is_some(), |ui| {
-        let Some((at, yours, ours)) = found else { return };
-        inspector::header(ui, at, None);
-        let change = [0, 1, 2].map(|i| format!("{:+}", i32::from(ours[i]) - i32::from(yours[i])));
-        let is_difference = mode == Some(Mode::Difference);
-        let words = |bytes: [u8; 3]| bytes.map(|byte| byte.to_string());
-        inspector::table(
-            ui,
-            &[
-                ("yours", "Your picture, 0 to 255".to_owned(), words(yours), is_yours && !is_difference),
-                (
-                    "ours",
-                    "The same stage by Weekender, 0 to 255".to_owned(),
-                    words(ours),
-                    !is_yours && !is_difference,
-                ),
-                (
-                    "change",
-                    "How much brighter ours is".to_owned(),
-                    change.map(|n| n.replace('-', "−")),
-                    is_difference,
-                ),
-            ],
-        );
-    });
+impl Checked {
+    /// Draws the answer. Returns the choice of another section; `None` in it looks for the section.
+    fn ui(
+        &self,
+        ui: &mut Ui,
+        cx: &PanelContext,
+        chosen: Option<&'static Stage>,
+        place: Option<usize>,
+    ) -> Option<Option<&'static Stage>> {
+        let Checked { answer, rows: [rows, height], compared } = self;
+        verdict(ui, answer);
+        if rows < height {
+            hint(ui, &format!("This is about the first {rows} of {height} rows. The others are awaited."));
+        }
+        if let Some(remedy) = &answer.remedy {
+            change(ui, remedy);
+        }
+        for Damage { title, remedy } in &answer.damages {
+            paragraph(ui, "The file, too", &format!("{title}: {remedy}."));
+        }
+        links(ui, answer, cx);
+        if compared.is_some() {
+            ui.add_space(4.0);
+            small(ui, "Compare");
+            if cx.model.view.partner == Partner::Mine {
+                compare::verdict(ui, cx);
+                compare::tools(ui, cx);
+                if !answer.places.is_empty() {
+                    ui.horizontal(|ui| {
+                        let words = if place.is_none() { "Show where" } else { "Next place" };
+                        command_button(ui, cx, Command::NextPlace, words);
+                        if place.is_some() {
+                            command_button(ui, cx, Command::Fit, "Whole picture");
+                        }
+                    });
+                }
+            } else {
+                command_button(ui, cx, Command::CompareWith(Partner::Mine), "Show it beside ours");
+            }
+        }
+        let of_section = section(ui, answer, chosen);
+        if !answer.evidence.is_empty() {
+            ui.add_space(4.0);
+            panel_line(ui);
+            fold(ui, Header { title: "Figures", ..Header::default() }, false, |ui| {
+                for line in &answer.evidence {
+                    hint(ui, &format!("{line}."));
+                }
+            });
+        }
+        of_section
+    }
 }
 
 /// A list to choose the section in that the picture belongs to. Returns the choice; `None` in it looks for the section.
@@ -364,16 +281,19 @@ fn section(ui: &mut Ui, answer: &Answer, chosen: Option<&'static Stage>) -> Opti
         (None, None) => "not found".to_owned(),
     };
     let about = About::new("Section", "Checks it as a picture of the section that you choose");
-    list(ui, about, &shown, |ui| {
-        if entry(ui, chosen.is_none(), About::new("Find it", "Compares it with all sections")) {
-            choice = Some(None);
-        }
-        for stage in Stage::ALL {
-            let name = format!("{} {}", stage.section, stage.title);
-            if entry(ui, chosen == Some(stage), About::new(&name, "")) {
-                choice = Some(Some(stage));
+    ui.scope(|ui| {
+        ui.spacing_mut().combo_width = ui.available_width() - 64.0;
+        list(ui, about, &shown, |ui| {
+            if entry(ui, chosen.is_none(), About::new("Find it", "Compares it with all sections")) {
+                choice = Some(None);
             }
-        }
+            for stage in Stage::ALL {
+                let name = format!("{} {}", stage.section, stage.title);
+                if entry(ui, chosen == Some(stage), About::new(&name, "")) {
+                    choice = Some(Some(stage));
+                }
+            }
+        });
     });
     choice
 }
@@ -425,13 +345,15 @@ fn change(ui: &mut Ui, remedy: &str) {
 /// Buttons that lead to the section of the mistake, or on.
 fn links(ui: &mut Ui, answer: &Answer, cx: &PanelContext) {
     ui.add_space(4.0);
+    let next = answer.stage.and_then(Stage::next).filter(|_| answer.kind == AnswerKind::Right);
+    if let Some(next) = next {
+        hint(ui, &format!("Section {} adds: {}.", next.section, next.title));
+    }
     ui.horizontal_wrapped(|ui| {
-        let next = answer.stage.and_then(Stage::next).filter(|_| answer.kind == AnswerKind::Right);
-        if let Some(next) = next {
-            hint(ui, &format!("Section {} adds: {}.", next.section, next.title));
-            if ui.add(primary(format!("Next: {}", next.section))).clicked() {
-                cx.send(Command::Stage(next));
-            }
+        if let Some(next) = next
+            && ui.add(primary(format!("Next: {}", next.section))).clicked()
+        {
+            cx.send(Command::Stage(next));
         }
         if let Some(section) = &answer.section {
             let stage = section.stage;
@@ -509,17 +431,15 @@ mod tests {
         assert!(remembered.done.contains("ppm-tiny"));
         let Checked { answer, compared, .. } = check.shown.as_ref().unwrap();
         assert_eq!((answer.stage, answer.kind), (Some(stage), AnswerKind::Right));
-        let (size, views) = compared.as_ref().unwrap();
-        assert!(
-            *size == [16, 9] && views[0].colour([3, 2]) == Some([51, 63, 0]),
-            "the first picture is the reader's"
-        );
-        // The side, the place and the tab stay where they are.
-        (check.mode, check.place, remembered.tab) = (Some(Mode::Flip), Some(0), Tab::Code);
+        let (of, kept) = compared.as_ref().unwrap();
+        assert_eq!((*of, kept.size()), (stage, [16, 9]));
+        assert_eq!(kept.film.to_rgb8(kept.transfer), tiny(0)[12..], "its bytes are shown as they are");
+        // The place and the tab stay where they are.
+        (check.place, remembered.tab) = (Some(0), Tab::Code);
         old_file(&path, &tiny(200));
         answered(&mut check, &mut remembered);
         assert_ne!(check.shown.as_ref().unwrap().answer.kind, AnswerKind::Right);
-        assert!(check.mode == Some(Mode::Flip) && check.place == Some(0) && remembered.tab == Tab::Code);
+        assert!(check.place == Some(0) && remembered.tab == Tab::Code);
         let mut next = Check::default();
         next.follow(&context, &mut remembered);
         assert!(next.is_open() && remembered.tab == Tab::Code);

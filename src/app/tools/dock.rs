@@ -6,7 +6,9 @@ use crate::app::model::{Dock, Model, Partner, ViewState};
 use crate::app::panels::{compare, plot};
 use crate::app::toolkit::menu::item;
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{TABS, choice, command_button, hint, panel_line, sign_button, small, tip};
+use crate::app::toolkit::widgets::{
+    TABS, choice, command_button, hint, panel_line, samples_words, sign_button, small, tip,
+};
 use crate::system::memory::words;
 use eframe::egui::{
     self, Align, Atom, Frame, Image, Label, Layout, Margin, RichText, Role, ScrollArea, Sides, Ui, Vec2,
@@ -139,7 +141,7 @@ fn card(ui: &mut Ui, place: usize, view: &mut ViewState, cx: &PanelContext) {
         view.partner = partner;
     }
     response.context_menu(|ui| MENU.iter().for_each(|command| _ = item(ui, cx, *command)));
-    let ([width, height], samples, memory) = (kept.size(), kept.samples(), words(kept.bytes()));
-    let help = format!("{}, {samples} samples per pixel, {width} × {height}, {memory}", kept.name);
+    let ([width, height], memory) = (kept.size(), words(kept.bytes()));
+    let help = format!("{}, {}, {width} × {height}, {memory}", kept.name, samples_words(kept.samples()));
     tip(ui, response, &help, None);
 }

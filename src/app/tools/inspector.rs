@@ -1,7 +1,8 @@
 //! The pixel inspector: the numbers of what is under the pointer, which in a comparison are those of one side and the change
 //! from one to the other.
 
-use crate::app::model::{Document, Mode, ViewState, kind_word};
+use crate::app::commands::Snapshot;
+use crate::app::model::{Document, Mode, Partner, ViewState, kind_word};
 use crate::app::toolkit::widgets::{compact, hint, tip};
 use crate::app::toolkit::{Query, theme};
 use crate::app::tracing::second::{Other, OtherId};
@@ -141,36 +142,40 @@ impl Inspector {
         }
     }
 
-    /// Draws the numbers. The other picture has the first name and document; `layer` is the displayed layer and its value.
+    /// Draws the numbers; `other` is the document of the other picture, and `layer` the displayed layer and its value.
     pub fn ui(
         &self,
         ui: &mut Ui,
-        names: [&str; 2],
-        documents: [Option<&Document>; 2],
-        mode: Option<Mode>,
+        snapshot: &Snapshot,
+        other: Option<&Document>,
         layer: Option<(Layer, [f64; 3])>,
     ) {
-        frame(ui, self.readout.is_some(), |ui| {
-            let Some(readout) = &self.readout else { return };
-            let document = documents[usize::from(!readout.is_other)];
-            let name = readout.compared.as_ref().map(|_| names[usize::from(!readout.is_other)]);
-            header(ui, readout.pixel.at, document.and_then(|document| surface(document, readout.pixel.at)));
-            table(ui, &rows(readout, names, name.unwrap_or_default(), mode, layer));
-        });
+        // The header and four rows, so that what is above stays where it is.
+        ui.spacing_mut().item_spacing.y = 0.0;
+        ui.set_min_height(24.0 + 4.0 * ROW * TextStyle::Small.resolve(ui.style()).size);
+        let Some(readout) = &self.readout else {
+            ui.horizontal(|ui| ui.label(RichText::new("Pixel").strong()));
+            hint(ui, "Point at the picture to read its numbers.");
+            return;
+        };
+        let document = if readout.is_other { other } else { Some(snapshot.document()) };
+        header(ui, readout.pixel.at, document.and_then(|document| surface(document, readout.pixel.at)));
+        let ([[_, theirs], [_, mine]], view) = (snapshot.model.side_names(), &snapshot.model.view);
+        let of = Compared {
+            names: [&theirs, &mine],
+            mode: view.mode(),
+            in_bytes: view.compared(snapshot.document()) == Some(Partner::Mine),
+        };
+        table(ui, &rows(readout, &of, layer));
+        ui.add_space(4.0);
     }
 }
 
-/// The header and four rows, so that what is above stays where it is.
-pub fn frame(ui: &mut Ui, has_pixel: bool, add: impl FnOnce(&mut Ui)) {
-    ui.spacing_mut().item_spacing.y = 0.0;
-    ui.set_min_height(24.0 + 4.0 * ROW * TextStyle::Small.resolve(ui.style()).size);
-    if has_pixel {
-        add(ui);
-        ui.add_space(4.0);
-    } else {
-        ui.horizontal(|ui| ui.label(RichText::new("Pixel").strong()));
-        hint(ui, "Point at the picture to read its numbers.");
-    }
+/// How two pictures are compared: their names, the other one first, and whether their numbers are bytes.
+struct Compared<'a> {
+    names: [&'a str; 2],
+    mode: Option<Mode>,
+    in_bytes: bool,
 }
 
 /// Where a picture of the size `theirs` that is drawn over one of the size `mine` has what that has at `at`. Pictures of
@@ -190,15 +195,15 @@ fn at_other(at: [u32; 2], mine: [u32; 2], theirs: [u32; 2]) -> Option<[u32; 2]> 
 }
 
 /// The display names of a sphere and its material.
-pub fn names(scene: &Scene, sphere: usize) -> (String, String) {
+fn names(scene: &Scene, sphere: usize) -> (String, String) {
     let named = &scene.materials[scene.spheres[sphere].material];
     let kind = kind_word(&named.material);
     let is_said = named.name.starts_with(kind);
     let name = if is_said { named.name.clone() } else { format!("{}, {kind}", named.name) };
-    (format!("sphere {sphere}"), name)
+    (format!("sphere {}", sphere + 1), name)
 }
 
-pub fn header(ui: &mut Ui, [x, y]: [u32; 2], surface: Option<(String, String)>) {
+fn header(ui: &mut Ui, [x, y]: [u32; 2], surface: Option<(String, String)>) {
     let (what, help) = surface.unzip();
     ui.horizontal(|ui| {
         ui.label(RichText::new("Pixel").strong());
@@ -210,13 +215,11 @@ pub fn header(ui: &mut Ui, [x, y]: [u32; 2], surface: Option<(String, String)>) 
 }
 
 /// A row of the table: name, help, red, green, blue, and whether it is about the picture under the pointer.
-pub type Row<'a> = (&'a str, String, [String; 3], bool);
+type Row<'a> = (&'a str, String, [String; 3], bool);
 
 fn rows<'a>(
     Readout { pixel, is_other, compared }: &Readout,
-    names: [&'a str; 2],
-    name: &str,
-    mode: Option<Mode>,
+    &Compared { names, mode, in_bytes }: &Compared<'a>,
     layer: Option<(Layer, [f64; 3])>,
 ) -> Vec<Row<'a>> {
     let light = "Linear radiance: the mean of the samples, before gamma";
@@ -224,12 +227,20 @@ fn rows<'a>(
     match compared {
         Some([theirs, mine]) => {
             let is_wipe = mode == Some(Mode::Wipe);
-            let help = |name: &str| format!("{name}. {light}");
-            rows.push((names[0], help(names[0]), theirs.mean.map(decimals), is_wipe && *is_other));
-            rows.push((names[1], help(names[1]), mine.mean.map(decimals), is_wipe && !is_other));
-            let change = [0, 1, 2].map(|i| mine.mean[i] - theirs.mean[i]);
+            let what = if in_bytes { "The bytes of the picture, 0 to 255" } else { light };
+            let values = |pixel: &Pixel| match in_bytes {
+                true => pixel.bytes.map(|byte| byte.to_string()),
+                false => pixel.mean.map(decimals),
+            };
+            for (name, pixel, is_it) in [(names[0], theirs, *is_other), (names[1], mine, !is_other)] {
+                rows.push((name, format!("{name}. {what}"), values(pixel), is_wipe && is_it));
+            }
+            let change = [0, 1, 2].map(|i| match in_bytes {
+                true => with_sign(i32::from(mine.bytes[i]) - i32::from(theirs.bytes[i])),
+                false => signed(mine.mean[i] - theirs.mean[i]),
+            });
             let help = format!("How much brighter {} is than {}", names[1], names[0]);
-            rows.push(("change", help, change.map(signed), !is_wipe));
+            rows.push(("change", help, change, !is_wipe));
         }
         None => {
             rows.push(("light", light.to_owned(), pixel.mean.map(decimals), true));
@@ -239,8 +250,9 @@ fn rows<'a>(
             rows.push(("noise ±", help.to_owned(), noise, true));
         }
     }
-    if mode != Some(Mode::Difference) {
-        let of = if name.is_empty() { String::new() } else { format!(" of {name}") };
+    if mode != Some(Mode::Difference) && !in_bytes {
+        let of =
+            compared.as_ref().map_or_else(String::new, |_| format!(" of {}", names[usize::from(!is_other)]));
         let help = format!("The byte that a file{of} gets, 0 to 255");
         rows.push(("saved as", help, pixel.bytes.map(|byte| byte.to_string()), true));
     }
@@ -258,7 +270,7 @@ fn rows<'a>(
     rows
 }
 
-pub fn table(ui: &mut Ui, rows: &[Row<'_>]) {
+fn table(ui: &mut Ui, rows: &[Row<'_>]) {
     let colours = theme::colours(ui);
     let rgb = [("R", colours.bad), ("G", colours.good), ("B", colours.accent)];
     cells(ui, "", "Red, green, blue", rgb.map(|(name, color)| (name.to_owned(), color)));
@@ -289,6 +301,10 @@ fn decimals(value: f64) -> String {
 
 fn signed(value: f64) -> String {
     format!("{value:+.4}").replace('-', "−")
+}
+
+fn with_sign(value: i32) -> String {
+    format!("{value:+}").replace('-', "−")
 }
 
 /// A row of the table.
@@ -327,12 +343,17 @@ mod tests {
             compared: Some(compared.clone()),
         };
         for (is_other, saved) in [(true, "1"), (false, "2")] {
-            let found = rows(&readout(is_other), ["11.2", "11.4"], "", Some(Mode::Wipe), None);
+            let mode = Some(Mode::Wipe);
+            let of = Compared { names: ["11.2", "11.4"], mode, in_bytes: false };
+            let found = rows(&readout(is_other), &of, None);
             let names: Vec<&str> = found.iter().map(|row| row.0).collect();
             assert_eq!(names, ["11.2", "11.4", "change", "saved as"]);
             assert_eq!(found[2].2, ["+0.2500", "−0.2500", "+0.0000"]);
             assert_eq!(found[3].2, [saved; 3]);
             assert_eq!([found[0].3, found[1].3], [is_other, !is_other], "the one under the pointer");
+            let of = Compared { in_bytes: true, ..of };
+            let found = rows(&readout(is_other), &of, None);
+            assert_eq!(found.iter().map(|row| row.2[0].as_str()).collect::<Vec<_>>(), ["1", "2", "+1"]);
         }
     }
 

@@ -6,6 +6,7 @@ use crate::app::model::{Device, Document, best_isa};
 use crate::app::toolkit::widgets::{hint, small, swatch};
 use crate::app::toolkit::{Query, theme};
 use crate::backends::explain::{Activity, Timeline, timeline};
+use crate::progressive::describe::counted;
 use crate::render_cpu::PathRecorder;
 use crate::stages::Shading;
 use eframe::egui::{self, Color32, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, vec2};
@@ -80,8 +81,9 @@ fn timelines_ui(ui: &mut Ui, timelines: &[Timeline; 2]) {
 fn timelines_in(ui: &mut Ui, height: f32, timelines: &[Timeline; 2]) {
     let lanes = timelines[0].lanes.len().max(1);
     ui.spacing_mut().item_spacing.y = 4.0;
+    let count = counted(lanes as u64, "path");
     ui.add(egui::Label::new(format!(
-        "A core traces {lanes} paths side by side, one per lane. Each row is a lane, each column a step. A lane whose path \
+        "A core traces {count} side by side, one per lane. Each row is a lane, each column a step. A lane whose path \
          has ended waits, unless it is refilled with the next path."
     )).wrap());
     let colours = theme::colours(ui);
@@ -91,21 +93,27 @@ fn timelines_in(ui: &mut Ui, height: f32, timelines: &[Timeline; 2]) {
         names.into_iter().zip(&colours).for_each(|(name, colour)| swatch(ui, *colour, name));
     });
     let steps = timelines.iter().map(Timeline::len).max().unwrap_or(0).max(1);
-    let column = (ui.available_width() / steps as f32).min(COLUMN);
-    let room = 0.5 * (height - ui.min_rect().height()) - HEADING - 8.0;
+    let room = height - ui.min_rect().height() - HEADING - 8.0;
     let row = (room / lanes as f32).clamp(*ROWS.start(), *ROWS.end());
-    for (timeline, name) in timelines.iter().zip(["Without refill", "With refill"]) {
-        let (steps, share) = (timeline.len(), 100.0 * timeline.share_at_work());
-        let figures = format!("{steps} steps, {share:.0} % of the lanes at work");
-        ui.horizontal(|ui| {
-            ui.label(RichText::new(name).small().strong());
-            small(ui, &figures);
-        });
-        let size = vec2(column * timeline.len() as f32, row * lanes as f32);
-        let (place, response) = ui.allocate_exact_size(size, Sense::hover());
-        response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, format!("{name}: {figures}")));
-        paint(ui, timeline, place, vec2(column, row), &colours);
-    }
+    // Side by side, since a dock is wide and low.
+    ui.columns_const(|columns: &mut [Ui; 2]| {
+        for (ui, (timeline, name)) in
+            columns.iter_mut().zip(timelines.iter().zip(["Without refill", "With refill"]))
+        {
+            let column = (ui.available_width() / steps as f32).min(COLUMN);
+            let (steps, share) = (timeline.len(), 100.0 * timeline.share_at_work());
+            let figures = format!("{steps} steps, {share:.0} % of the lanes at work");
+            ui.horizontal(|ui| {
+                ui.label(RichText::new(name).small().strong());
+                small(ui, &figures);
+            });
+            let size = vec2(column * timeline.len() as f32, row * lanes as f32);
+            let (place, response) = ui.allocate_exact_size(size, Sense::hover());
+            response
+                .widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, format!("{name}: {figures}")));
+            paint(ui, timeline, place, vec2(column, row), &colours);
+        }
+    });
 }
 
 fn paint(ui: &Ui, timeline: &Timeline, place: Rect, pitch: egui::Vec2, colours: &[Color32; 5]) {

@@ -218,7 +218,7 @@ fn other<'a>(
 ) -> Option<Other<'a>> {
     let document = &model.document;
     match model.view.compared(document)? {
-        Partner::Kept(_) => model.view.kept_partner().map(Other::Kept),
+        Partner::Kept(_) | Partner::Mine => model.view.kept_partner().map(Other::Kept),
         Partner::Raw => {
             let denoised = model.view.denoised_of(main.status().run).filter(|_| main.has_samples(document));
             denoised.map(|_| Other::Traced(Partner::Raw, main, document))

@@ -6,7 +6,7 @@ pub mod paint;
 pub mod pixel_values;
 mod placement;
 mod selection;
-pub mod sight;
+pub mod visit;
 
 pub use paint::Pictures;
 pub use placement::{Placement, Touch};
@@ -18,7 +18,7 @@ use crate::app::toolkit::widgets::compact;
 use crate::scene::Camera;
 use eframe::egui::{self, CursorIcon, PointerButton, Pos2, Rect, Response, Sense, Ui, WidgetInfo, vec2};
 use moving::Moving;
-use placement::{Zoom, place_at, whole_pixels};
+use placement::{place_at, whole_pixels};
 use selection::Selection;
 
 /// How far right the divider can be dragged, so that its handle stays in sight.
@@ -59,6 +59,14 @@ impl Viewport {
     pub fn aim(&self) -> [f64; 2] {
         const FOREGROUND: [f64; 2] = [0.5, 0.7];
         self.pointer.unwrap_or(FOREGROUND)
+    }
+
+    /// Whether the pointer was over the picture when that was last drawn.
+    pub fn has_pointer(&self, context: &egui::Context) -> bool {
+        let at = context.input(|input| input.pointer.hover_pos());
+        at.is_some_and(|at| {
+            self.placement.rect.contains(at) && self.room.is_some_and(|room| room.contains(at))
+        })
     }
 
     /// Draws the picture and handles input on it, which moves the camera and the wipe's divider, `0..=1` of the picture's
@@ -133,8 +141,7 @@ impl Viewport {
     fn place(&mut self, ui: &Ui, room: Rect, snapshot: &Snapshot) -> Rect {
         let model = &snapshot.model;
         let is_presenting = model.presentation.is_some();
-        let is_of_sight = matches!(self.placement.zoom, Zoom::Part(_));
-        if !snapshot.has_sight && (is_presenting || is_of_sight) {
+        if !snapshot.has_sight && is_presenting {
             self.placement.fit();
         }
         let margin = if is_presenting || !model.has_panels() { 0.0 } else { MARGIN };

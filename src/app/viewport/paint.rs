@@ -24,6 +24,8 @@ pub struct Pictures<'a> {
     pub second: Option<(&'a Texture, bool)>,
     /// Paths to draw over the picture.
     pub paths: &'a Paths,
+    /// The column and row of places to mark.
+    pub places: &'a [[u32; 2]],
     /// Numbers to draw in large pixels.
     pub values: &'a PixelValues,
     /// The titles of the two pictures of a comparison, the other one first.
@@ -46,7 +48,7 @@ pub(super) fn paint(
         let is_square = !is_smooth && ((times - 1.0).abs() < 1e-4 || times >= SQUARES);
         texture.id(ui.ctx(), if is_square { TextureOptions::NEAREST } else { TextureOptions::LINEAR })
     };
-    let Pictures { main, second, paths, values, titles } = pictures;
+    let Pictures { main, second, paths, places, values, titles } = pictures;
     // The hole is one point smaller, so that no gap stays between picture and background.
     let hole = if main.is_some() { rect.shrink(1.0).intersect(room) } else { Rect::NOTHING };
     fill_around(&painter, room, hole, theme::colours(ui).surround);
@@ -68,6 +70,7 @@ pub(super) fn paint(
         }
         _ => {}
     }
+    mark(&painter, rect, document.size(), places);
     let is_difference = view.mode() == Some(Mode::Difference) && second.is_some();
     let scale = if is_difference { Some(HeatScale::DIFFERENCE) } else { view.show().scale(&view.tone) };
     if let Some(scale) = scale {
@@ -86,6 +89,20 @@ pub(super) fn paint(
     }
     if !view.is_hidden() {
         paths.paint(document, ui, &painter, rect);
+    }
+}
+
+/// Draws a frame around places of a picture of `size` pixels.
+fn mark(painter: &Painter, rect: Rect, size: [u32; 2], places: &[[u32; 2]]) {
+    /// Its side, pixels of the picture.
+    const SIDE: f32 = 10.0;
+    let scale = rect.width() / size[0] as f32;
+    for [x, y] in places {
+        let middle = rect.min + vec2(*x as f32 + 0.5, *y as f32 + 0.5) * scale;
+        let frame = Rect::from_center_size(middle, egui::Vec2::splat(SIDE * scale));
+        for (width, colour) in [(3.0, Color32::from_black_alpha(140)), (1.0, Color32::WHITE)] {
+            painter.rect_stroke(frame, 2.0, Stroke::new(width, colour), egui::StrokeKind::Outside);
+        }
     }
 }
 

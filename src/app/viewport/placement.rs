@@ -46,6 +46,13 @@ impl Placement {
         self.zoom = Zoom::Part(Rect::from_min_max(corner(left, top), corner(right, bottom)));
     }
 
+    /// Fits the whole picture, unless the user has chosen the scale.
+    pub fn leave_part(&mut self) {
+        if matches!(self.zoom, Zoom::Part(_)) {
+            self.fit();
+        }
+    }
+
     /// Shows one picture pixel per screen pixel.
     pub fn actual_size(&mut self) {
         self.zoom = Zoom::Times(1.0);

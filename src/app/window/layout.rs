@@ -1,17 +1,17 @@
 //! Where everything is drawn in a frame: panels, the picture, what lies over it, and dialogs.
 
 use super::Window;
-use crate::app::commands::{PanelContext, Requests};
-use crate::app::model::{Mode, Model, Remembered, Tab};
+use crate::app::commands::{Command, PanelContext, Requests};
+use crate::app::model::{Mode, Model, Partner, Remembered, Tab};
 use crate::app::panels::{bar, compare, controls, first_steps, present, right, stage_panel, status};
 use crate::app::toolkit::theme;
-use crate::app::tools::dock;
 use crate::app::tools::inspector::Inspector;
+use crate::app::tools::{Tools, dock};
 use crate::app::tracing::Tracing;
 use crate::app::tracing::second::Other;
 use crate::app::viewport::display::Display;
 use crate::app::viewport::{Pictures, Touch};
-use eframe::egui::{self, Ui};
+use eframe::egui::{self, ScrollArea, Ui};
 
 /// Windows narrower than this many points have no room for two panels beside the picture.
 pub(super) const NARROW: f32 = 1000.0;
@@ -19,13 +19,19 @@ pub(super) const NARROW: f32 = 1000.0;
 /// In windows lower than this many points, what is compared scrolls with the text.
 const LOW: f32 = 500.0;
 
+/// The share of the right panel's height that view and comparison have; more of them scrolls.
+const FOOT: f32 = 0.4;
+
 impl Window {
     /// Draws everything. Each panel gets the state that it may change, the facts, and the list of commands to add to.
     pub(super) fn layout(&mut self, ui: &mut Ui) {
         let cx = PanelContext::new(self.snapshot());
         bar::name_window(ui.ctx(), cx.document());
         if cx.model.presentation.is_some() {
-            present::ui(ui, &cx);
+            let Window { display, tracing, tools, .. } = self;
+            let is_read = display.viewport.has_pointer(ui.ctx());
+            let numbers = |ui: &mut Ui| numbers(ui, &cx, display, tracing, &tools.inspector);
+            present::ui(ui, &cx, is_read.then_some(numbers));
         }
         if cx.model.has_panels() {
             self.panels(ui, &cx);
@@ -76,14 +82,21 @@ impl Window {
                 let chosen = right::tabs(ui, &tabs, tab);
                 if chosen != tab {
                     remembered.tab = chosen;
+                    if chosen == Tab::Check && view.kept.mine.is_some() {
+                        cx.send(Command::CompareWith(Partner::Mine));
+                    }
                 }
                 match tab {
                     Tab::Stage => {
+                        let height = FOOT * ui.available_height();
                         right::foot(ui, |ui| {
-                            display.tone.ui(ui, view, cx);
-                            if !is_low {
-                                compare::ui(ui, cx);
-                            }
+                            let area = ScrollArea::vertical().max_height(height).auto_shrink([false, true]);
+                            area.show(ui, |ui| {
+                                display.tone.ui(ui, view, cx);
+                                if !is_low {
+                                    compare::ui(ui, cx);
+                                }
+                            });
                             numbers(ui, cx, display, tracing, &tools.inspector);
                         });
                         right::scrolling(ui, |ui| {
@@ -94,7 +107,10 @@ impl Window {
                         });
                     }
                     Tab::Code => tools.code.ui(ui, cx),
-                    Tab::Check => tools.check.ui(ui, cx),
+                    Tab::Check => {
+                        let Tools { check, inspector, .. } = tools;
+                        check.ui(ui, cx, |ui| numbers(ui, cx, display, tracing, inspector));
+                    }
                     Tab::Controls => right::scrolling(ui, |ui| controls(ui, remembered)),
                 }
             });
@@ -109,12 +125,6 @@ impl Window {
         }
         if cx.model.has_panels() && cx.model.remembered.dock.is_none() {
             first_steps::ui(ui, cx);
-        }
-        if cx.model.shows(Tab::Check)
-            && let Some(room) = self.tools.check.picture(ui)
-        {
-            self.display.viewport.room = Some(room);
-            return Touch::default();
         }
         if cx.model.presentation.is_some() {
             let context = ui.ctx().clone();
@@ -141,6 +151,10 @@ impl Window {
                 .and_then(|other| tracing.second.texture(&other))
                 .map(|(texture, is_preview)| (texture, is_preview || is_scaled)),
             paths: &tools.paths,
+            places: match cx.model.view.compared(cx.document()) {
+                Some(Partner::Mine) => tools.check.places(),
+                _ => &[],
+            },
             values: &display.values,
         };
         let handles = (&mut document.camera, &mut view.divider, selected);
@@ -151,6 +165,7 @@ impl Window {
     fn take_touch(&mut self, ui: &Ui, touch: Touch, cx: &PanelContext) {
         let room = self.display.viewport.room;
         if cx.model.presentation.is_some()
+            && !present::has_texts(cx)
             && let (Some(room), Some(at)) = (room, ui.input(|input| input.pointer.hover_pos()))
             && touch.hovered.is_some()
         {
@@ -180,6 +195,5 @@ fn numbers(ui: &mut Ui, cx: &PanelContext, display: &Display, tracing: &Tracing,
     let at = inspector.readout().map(|readout| readout.pixel.at);
     let value = at.filter(|_| view.show().layer().is_some()).and_then(|at| display.layers.value_at(at));
     let other = tracing.other(&cx.model).map_or(Some(cx.document()), |other| other.document());
-    let [[_, theirs], [_, mine]] = cx.model.side_names();
-    inspector.ui(ui, [&theirs, &mine], [other, Some(cx.document())], view.mode(), value);
+    inspector.ui(ui, cx, other, value);
 }

@@ -148,7 +148,6 @@ impl Window {
             is_moving: self.changes.is_in_gesture,
             is_held: self.tracing.main.is_held(),
             is_lost: self.display.is_lost && self.model.playing.is_none(),
-            checked: self.tools.check.words().filter(|_| self.model.shows(Tab::Check)),
             has_pixel: self.tools.inspector.hovered.is_some(),
             has_paths: self.tools.paths.len() > 0,
             has_sight: self.display.sight.is_some(),
@@ -361,7 +360,7 @@ impl Window {
 
 impl eframe::App for Window {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        let view = self.display.sight.as_ref().map_or(&self.model.view, |sight| sight.before());
+        let view = self.display.sight.as_ref().map_or(&self.model.view, |sight| &sight.view);
         Stored::write(self.model.remembered.clone(), view.clone(), storage);
         Stored::forget_full_screen(storage);
     }

@@ -14,15 +14,15 @@ use crate::app::model::{
     Body, Device, Dock, Document, Edit, Mode, Model, Origin, Partner, Presentation, Remembered, Show, Source,
     Tab, Tone, companion, device, navigation,
 };
-use crate::app::toolkit::Finder;
-use crate::app::toolkit::widgets::focus;
-use crate::app::viewport::sight::Sighted;
+use crate::app::toolkit::widgets::{focus, samples_words};
+use crate::app::toolkit::{Answers, Finder};
+use crate::app::viewport::display::CheckVisit;
+use crate::app::viewport::visit::Visit;
 use crate::cli::{FramesOptions, ProgressChoice};
 use crate::film::Film;
 use crate::job::output::OutputFormat;
 use crate::job::recipe::Recipe;
 use crate::job::recipe::file::sphere_to_toml;
-use crate::measure::grouped;
 use crate::scene::animation::FrameNames;
 use crate::stages::{BOOK_URL, Stage};
 use eframe::egui::{self, Context, ViewportCommand};
@@ -117,7 +117,10 @@ impl Window {
             C::Bookmark(at) => document.keyframes.get(at).iter().for_each(|to| document.camera = to.camera),
             C::Play => self.begin_play(context),
 
-            C::Fit => display.viewport.placement.fit(),
+            C::Fit => {
+                display.viewport.placement.fit();
+                tools.check.place = None;
+            }
             C::ActualSize => display.viewport.placement.actual_size(),
             C::ZoomIn => display.viewport.placement.zoom_by(1.25),
             C::ZoomOut => display.viewport.placement.zoom_by(0.8),
@@ -194,10 +197,14 @@ impl Window {
             C::Wipe => view.toggle(Mode::Wipe),
             C::Flip => view.toggle(Mode::Flip),
             C::Difference => view.toggle(Mode::Difference),
-            C::CompareWith(partner) => self.compare_with(partner),
-            C::CompareDevices => self.compare_devices(),
+            C::CompareWith(partner) => self.compare_with(context, partner),
+            C::CompareDevices => self.compare_devices(context),
             C::CompareFile => self.ask_path(context, Purpose::Compare),
-            C::CompareMine => self.compare_mine(context),
+            C::NextPlace => tools
+                .check
+                .next_place()
+                .into_iter()
+                .for_each(|part| display.viewport.placement.show_part(part)),
             C::RenderAtPartnerSize => {
                 view.kept_partner().into_iter().for_each(|kept| document.give_size(kept.size()));
             }
@@ -260,6 +267,17 @@ impl Window {
 
     /// Shows another picture. The user's own way to stop stays, unless the picture has its own.
     pub(super) fn show_origin(&mut self, origin: Origin) {
+        let document = self.fresh(origin);
+        let before = self.document();
+        if before.is_changed() && !before.is_from_file {
+            let words = format!("Your changes to {} are kept in Undo", before.place());
+            self.shell.toasts.good_with(words, &[Command::Undo]);
+        }
+        self.show_document(document);
+    }
+
+    /// A picture from this origin, with what the user has chosen for it.
+    fn fresh(&self, origin: Origin) -> Document {
         let mut document = Document::new(origin);
         if let Some(stop) = self.model.own_stop.filter(|_| document.stop.samples.is_none()) {
             document.stop = stop;
@@ -269,12 +287,7 @@ impl Window {
         if let Some(known) = known.filter(|known| known.origin.source != Source::New) {
             document.keyframes.clone_from(&known.keyframes);
         }
-        let before = self.document();
-        if before.is_changed() && !before.is_from_file {
-            let words = format!("Your changes to {} are kept in Undo", before.place());
-            self.shell.toasts.good_with(words, &[Command::Undo]);
-        }
-        self.show_document(document);
+        document
     }
 
     pub(super) fn show_document(&mut self, document: Document) {
@@ -283,7 +296,7 @@ impl Window {
             |model: &Model| matches!(model.view.compared(&model.document), Some(Partner::Stage(_)));
         let was_with_stage = is_with_stage(&self.model);
         if !Arc::ptr_eq(&document.origin, &self.document().origin) {
-            self.model.view.leave_partner();
+            self.leave_picture();
         }
         self.model.document = document;
         // The next stage has a partner of its own; what has none is not compared with something of another kind.
@@ -295,6 +308,13 @@ impl Window {
             self.model.remembered.tab = Tab::Stage;
         }
         self.tools.forget();
+    }
+
+    /// Leaves what belongs to the picture that was shown.
+    fn leave_picture(&mut self) {
+        self.model.view.leave_partner();
+        self.display.viewport.placement.leave_part();
+        self.display.check = None;
     }
 
     pub(super) fn step_stage(&mut self, is_next: bool) {
@@ -319,13 +339,13 @@ impl Window {
 
     /// Changes the document. With other spheres, the selection would be another one.
     pub(super) fn change(&mut self, change: impl FnOnce(&mut Self)) {
-        let scene = |window: &Self| {
-            let document = window.document();
-            (Arc::as_ptr(&document.origin), document.scene().spheres.len())
-        };
-        let before = scene(self);
+        let before = self.document().clone();
         change(self);
-        if scene(self) != before {
+        let is_other = !Arc::ptr_eq(&before.origin, &self.document().origin);
+        if is_other {
+            self.leave_picture();
+        }
+        if is_other || before.scene().spheres.len() != self.document().scene().spheres.len() {
             self.model.selected = None;
         }
     }
@@ -399,7 +419,10 @@ impl Window {
 
     // View
 
-    fn compare_with(&mut self, partner: Partner) {
+    fn compare_with(&mut self, context: &Context, partner: Partner) {
+        if partner == Partner::Mine {
+            self.visit_checked(context);
+        }
         self.model.view.compare_with(partner);
         if matches!(partner, Partner::Device(_)) {
             self.model.remembered.dock = Some(Dock::Error);
@@ -407,7 +430,7 @@ impl Window {
     }
 
     /// Compares CPU and GPU, or ends that.
-    fn compare_devices(&mut self) {
+    fn compare_devices(&mut self, context: &Context) {
         let other = if self.model.remembered.device == Device::Gpu { Device::Cpu } else { Device::Gpu };
         if self.model.other_device() == Some(other) {
             self.model.view.end_comparison();
@@ -416,20 +439,72 @@ impl Window {
         if !matches!(self.model.remembered.device, Device::Cpu | Device::Gpu) {
             self.model.remembered.device = Device::Cpu;
         }
-        self.compare_with(Partner::Device(other));
+        self.compare_with(context, Partner::Device(other));
     }
 
-    /// Traces the stage of the picture that is checked, and compares the two.
-    fn compare_mine(&mut self, context: &Context) {
-        let Some(path) = self.model.remembered.mine.clone() else { return };
-        if let Some((stage, size)) = self.tools.check.found() {
-            if self.document().stage() != Some(stage) {
-                self.show_origin(Origin::of_stage(stage));
-            }
-            self.model.document.give_size(size);
+    /// Traces the stage of the picture that is checked, in its size. The end of the check returns to what is shown now.
+    fn visit_checked(&mut self, context: &Context) {
+        let Some((stage, mine)) = self.tools.check.found() else { return };
+        let size = mine.size();
+        let begun = self.display.check.take().filter(|check| check.visit.is_of(self.document()));
+        let is_shown = self.document().stage() == Some(stage) && self.document().size() == size;
+        if begun.is_some() && is_shown {
+            self.display.check = begun;
+            return;
         }
-        self.model.remembered.tab = Tab::Stage;
-        self.display.kept.read(context, &self.model, path);
+        self.end_sight();
+        let check = begun.unwrap_or_else(|| self.begin_visit(context));
+        let tab = self.model.remembered.tab;
+        let mut document = self.fresh(Origin::of_stage(stage));
+        document.give_size(size);
+        self.show_document(document);
+        self.model.remembered.tab = tab;
+        self.display.viewport.placement.fit();
+        let visit = check.visit.at(self.document(), &self.model.view);
+        self.display.check = Some(CheckVisit { visit, ..check });
+    }
+
+    fn begin_visit(&self, context: &Context) -> CheckVisit {
+        let (document, placement) = (self.document(), &self.display.viewport.placement);
+        let (mut film, seconds) = (Answers::default(), self.tracing.seconds());
+        if self.tracing.main.has_samples(document) {
+            let answer = film.answer(context);
+            let copy = move |film: &Film| answer.give(film.try_copy().map_err(|error| error.to_string()));
+            self.tracing.main.inspect(copy);
+        }
+        CheckVisit { visit: Visit::from(document, &self.model.view, placement), film, seconds }
+    }
+
+    /// Takes what a check has found, and shows it if the check is in sight.
+    pub(super) fn take_checked(&mut self, context: &Context) {
+        let mine = self.tools.check.found().map(|(_, mine)| Arc::clone(mine));
+        let before = std::mem::replace(&mut self.model.view.kept.mine, mine);
+        if self.model.view.kept.mine.is_none() {
+            self.end_check();
+        } else if before.is_none() && self.model.shows(Tab::Check) {
+            self.model.view.end_comparison();
+            self.compare_with(context, Partner::Mine);
+        } else if self.model.view.compared(self.document()) == Some(Partner::Mine) {
+            self.compare_with(context, Partner::Mine);
+        }
+    }
+
+    /// Returns to what was shown before the pictures of a check.
+    fn end_check(&mut self) {
+        self.model.view.kept.mine = None;
+        let Some(CheckVisit { visit, mut film, seconds }) = self.display.check.take() else { return };
+        self.end_sight();
+        let (document, view) = (&mut self.model.document, &mut self.model.view);
+        if !visit.end(document, view, &mut self.display.viewport.placement) {
+            return;
+        }
+        self.model.selected = None;
+        self.tools.forget();
+        if let Some(Ok(film)) = film.take()
+            && [film.width(), film.height()] == self.document().size()
+        {
+            self.adopt(film, seconds);
+        }
     }
 
     /// Leaves views and comparisons that the picture of now cannot have.
@@ -445,11 +520,16 @@ impl Window {
             self.shell.toasts.good_with(reason, &[Command::RenderAtPartnerSize]);
             self.model.view.end_comparison();
         }
+        let mine = self.model.view.kept.mine.as_ref();
+        if mine.is_some_and(|mine| mine.name != self.tools.check.name()) {
+            self.end_check();
+        }
         let Some(sight) = &self.display.sight else { return };
-        if sight.is_of_another(&self.model.document) {
+        if !sight.is_of(&self.model.document) {
             self.end_sight();
         } else if !sight.lasts(&self.model.document, &self.model.view) {
             self.display.sight = None;
+            self.display.viewport.placement.leave_part();
         }
     }
 
@@ -460,8 +540,7 @@ impl Window {
         }
         let Some(stage) = self.document().stage() else { return };
         let (document, view) = (&mut self.model.document, &mut self.model.view);
-        self.display.sight =
-            Some(Sighted::begin(stage, document, view, &mut self.display.viewport.placement));
+        self.display.sight = Some(Visit::sight(stage, document, view, &mut self.display.viewport.placement));
     }
 
     pub(super) fn end_sight(&mut self) {
@@ -689,7 +768,7 @@ impl Window {
         let Some((document, samples)) = self.autosave.offer() else { return };
         let name = document.place();
         let what = match samples {
-            Some(samples) => format!("{name} with {} samples per pixel", grouped(samples)),
+            Some(samples) => format!("{name} with {}", samples_words(samples)),
             None => format!("{name} with your changes"),
         };
         let words = format!("A window ended early: {what} was saved.");

@@ -6,6 +6,7 @@ use crate::app::files::{Made, Resumed, name_of};
 use crate::app::model::{Dock, Document, Kept, Origin, Partner, Source};
 use crate::job::saved::{Opened, Saved};
 use crate::progressive::Stop;
+use crate::progressive::describe::counted;
 use eframe::egui::Context;
 use std::sync::Arc;
 
@@ -20,7 +21,8 @@ impl Window {
                     self.shell.toasts.good_with(words, &[Command::ShowInFolder]);
                 }
                 Some(Made::Frames(count, folder)) => {
-                    self.shell.toasts.good(format!("Saved {count} frames in {}", folder.display()));
+                    let frames = counted(count.into(), "frame");
+                    self.shell.toasts.good(format!("Saved {frames} in {}", folder.display()));
                 }
                 Some(Made::Companion(is_full)) => self.show_companion(context, is_full),
                 None => {
@@ -37,7 +39,9 @@ impl Window {
                 None => {}
             }
         }
-        self.tools.check.follow(context, &mut self.model.remembered);
+        if self.tools.check.follow(context, &mut self.model.remembered) {
+            self.take_checked(context);
+        }
         while let Some(Ok((picture, what))) = self.files.copied.take() {
             self.shell.toasts.good(format!("Copied the {what}"));
             context.copy_image(picture);

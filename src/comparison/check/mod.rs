@@ -129,7 +129,7 @@ impl<'a> Lines<'a> {
 }
 
 /// The reader's picture, ours, and a heat map of the difference: 8-bit RGB, row by row from the top.
-pub fn pictures(mine: &Mine, finding: &Finding) -> [Vec<[u8; 3]>; 3] {
+fn pictures(mine: &Mine, finding: &Finding) -> [Vec<[u8; 3]>; 3] {
     let right = &finding.right;
     let ours = right.hypothesis.written.bytes_of(&right.rendered.mean(), [mine.width, mine.height]);
     let difference = mine.bytes.iter().zip(&ours).map(|(mine, ours)| {

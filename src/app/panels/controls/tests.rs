@@ -122,6 +122,6 @@ fn the_other_side_follows_as_far_as_its_limits_allow() {
         ([225, 400], [16384, 400], [9216, 16384]),
         ([400, 4], [10, 4], [10, 1]),
     ] {
-        assert_eq!(in_shape(before, size), expected, "{before:?} {size:?}");
+        assert_eq!(in_shape(before, before, size), expected, "{before:?} {size:?}");
     }
 }

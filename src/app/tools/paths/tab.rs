@@ -4,6 +4,7 @@ use super::{Path, Paths, is_ground, side};
 use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{choice, compact, hint, point_words, sign_button, small, tip};
 use crate::backends::explain::{Event, Lobe};
+use crate::progressive::describe::counted;
 use crate::scene::Scene;
 use eframe::egui::{Align, Atom, Label, Layout, Margin, RichText, ScrollArea, Sides, Ui, vec2};
 
@@ -110,7 +111,7 @@ fn title(path: &Path, at: usize, scene: &Scene) -> String {
     match step.event {
         Event::Sky => "ends in the sky",
         Event::Shown => "ends at the surface",
-        Event::Limit => return format!("ends after {at} rays"),
+        Event::Limit => return format!("ends after {}", counted(at as u64, "ray")),
         Event::Absorbed(_) => "ends in the metal",
         Event::Scattered(Lobe::Glass { refracts, .. }) => {
             match (refracts, hit.is_some_and(|hit| hit.is_outside)) {
