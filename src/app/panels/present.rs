@@ -1,4 +1,4 @@
-//! A presentation: large captions around the picture, progress along the bottom, and a magnifier.
+//! A presentation: large captions around the picture, and progress along the bottom.
 //!
 //! All sizes are shares of the window's height, so that a projector's resolution does not matter.
 
@@ -8,8 +8,8 @@ use crate::app::toolkit::theme;
 use crate::progressive::Phase;
 use crate::stages::Stage;
 use eframe::egui::{
-    self, Align, Align2, Color32, Context, CursorIcon, FontFamily, FontId, Frame, Label, Layout, Margin,
-    Panel, Pos2, Rect, RichText, Role, Sense, Sides, Style, TextStyle, Ui, WidgetInfo, vec2,
+    self, Align, Color32, Context, CursorIcon, FontFamily, FontId, Frame, Label, Layout, Margin, Panel, Rect,
+    RichText, Role, Sense, Sides, Style, TextStyle, Ui, WidgetInfo, vec2,
 };
 
 /// Text sizes in hundredths of the height: the largest that has room is used.
@@ -24,8 +24,8 @@ fn unit(context: &Context) -> f32 {
     (size.y / 100.0).min(size.x / 133.0).max(1.0)
 }
 
-/// Draws everything except the picture, which gets the room that is left. The numbers of the pixel under the pointer stand
-/// in place of a text.
+/// Draws everything except the picture, which gets the room that is left. With captions, the numbers of the pixel under the
+/// pointer stand in place of a text.
 pub fn ui(ui: &mut Ui, cx: &PanelContext, numbers: Option<impl FnOnce(&mut Ui)>) {
     let unit = unit(ui.ctx());
     let words = status::sentence(cx);
@@ -49,9 +49,7 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext, numbers: Option<impl FnOnce(&mut Ui)>)
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(words));
         });
     });
-    if let Some(texts) = texts(cx) {
-        bottom("present texts", 16.0 * unit, margin).show(ui, |ui| columns(ui, unit, texts, numbers));
-    }
+    bottom("present texts", 16.0 * unit, margin).show(ui, |ui| columns(ui, unit, texts(cx), numbers));
     let title_bar = Panel::top("present title").exact_size(9.0 * unit).show_separator_line(false);
     title_bar.frame(frame(margin)).show(ui, |ui| ui.horizontal_centered(|ui| title(ui, unit, cx)));
 }
@@ -89,30 +87,6 @@ pub fn enlarge(context: &Context, style: &mut Style) {
     }
 }
 
-/// The numbers of the pixel under the pointer, in a corner of the viewport away from it.
-pub fn magnify(ui: &Ui, room: Rect, pointer: Pos2, has_scale: bool, numbers: impl FnOnce(&mut Ui)) {
-    let unit = unit(ui.ctx());
-    let is_near = |corner: Align2| {
-        let away = (pointer - corner.pos_in_rect(&room)).abs() / room.size();
-        away.x < 0.5 && away.y < 0.5
-    };
-    // A scale is at the lower left.
-    let corners = if has_scale {
-        [Align2::RIGHT_BOTTOM, Align2::RIGHT_TOP]
-    } else {
-        [Align2::LEFT_BOTTOM, Align2::RIGHT_BOTTOM]
-    };
-    let corner = if is_near(corners[0]) { corners[1] } else { corners[0] };
-    let area = egui::Area::new(egui::Id::unique("magnifier")).pivot(corner).interactable(false);
-    area.fixed_pos(corner.pos_in_rect(&room.shrink(MARGIN * unit))).show(ui.ctx(), |ui| {
-        enlarge(&ui.ctx().clone(), ui.style_mut());
-        theme::float_frame(ui).show(ui, |ui| {
-            ui.set_width(42.0 * unit);
-            numbers(ui);
-        });
-    });
-}
-
 /// Covers everything with black.
 pub fn blank(context: &Context) {
     let layer = egui::LayerId::new(egui::Order::Debug, egui::Id::unique("blank"));
@@ -143,21 +117,18 @@ fn title(ui: &mut Ui, unit: f32, snapshot: &Snapshot) {
     Sides::new().height(ui.available_height()).shrink_left().show(ui, left, right);
 }
 
-/// Whether texts stand below the picture.
-pub fn has_texts(snapshot: &Snapshot) -> bool {
-    let has_captions = snapshot.model.presentation.is_some_and(|presentation| presentation.has_captions);
-    has_captions && texts(snapshot).is_some()
-}
-
-/// The headings and texts below the picture.
-fn texts(snapshot: &Snapshot) -> Option<[(&'static str, &'static str); 2]> {
+/// The headings and texts below the picture; none of a scene of one's own.
+fn texts(snapshot: &Snapshot) -> [(&'static str, &'static str); 2] {
     let (stage, case) = (snapshot.document().stage(), snapshot.document().case());
-    if let Some(stage) = stage {
-        let look_for = if snapshot.has_sight { stage.sight.caption } else { stage.look_for };
-        return Some([("What is new", stage.what_is_new), ("Look for", look_for)]);
+    let watched = case.and_then(|case| Some((case.family.title, case.watch?.look_for)));
+    match (stage, watched) {
+        (Some(stage), _) => {
+            let look_for = if snapshot.has_sight { stage.sight.caption } else { stage.look_for };
+            [("What is new", stage.what_is_new), ("Look for", look_for)]
+        }
+        (None, Some((title, look_for))) => [("What is difficult", title), ("Look for", look_for)],
+        (None, None) => [("", ""); 2],
     }
-    let watch = case?.watch?;
-    Some([("What is difficult", case?.family.title), ("Look for", watch.look_for)])
 }
 
 /// Two texts side by side, as large as both have room.

@@ -38,7 +38,7 @@ impl Window {
         }
         let touch =
             egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| self.middle(ui, &cx));
-        self.take_touch(ui, touch.inner, &cx);
+        self.take_touch(ui, touch.inner);
         let outcome = self.shell.dialogs.ui(ui, &cx);
         self.end_dialog(&ui.ctx().clone(), outcome);
         if cx.model.presentation.is_some_and(|presentation| presentation.is_blank) {
@@ -162,20 +162,8 @@ impl Window {
     }
 
     /// Does what the pointer did in the picture.
-    fn take_touch(&mut self, ui: &Ui, touch: Touch, cx: &PanelContext) {
+    fn take_touch(&mut self, ui: &Ui, touch: Touch) {
         let room = self.display.viewport.room;
-        if cx.model.presentation.is_some()
-            && !present::has_texts(cx)
-            && let (Some(room), Some(at)) = (room, ui.input(|input| input.pointer.hover_pos()))
-            && touch.hovered.is_some()
-        {
-            let Window { display, tracing, tools, .. } = self;
-            let view = &cx.model.view;
-            let has_scale = view.mode() == Some(Mode::Difference) || view.show().scale(&view.tone).is_some();
-            present::magnify(ui, room, at, has_scale, |ui| {
-                numbers(ui, cx, display, tracing, &tools.inspector);
-            });
-        }
         self.tools.inspector.hover(touch.hovered, touch.is_over_other);
         if let Some(said) = touch.said {
             self.shell.toasts.good(said);
