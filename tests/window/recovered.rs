@@ -2,6 +2,7 @@
 
 use crate::common::{has_samples, opened, send, until};
 use crate::questions::Ask as _;
+use crate::right::{drop_file, gradient, until_compared};
 use eframe::{App, Storage};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -61,6 +62,21 @@ fn the_last_picture_comes_back_with_its_samples() {
     drop(next);
     let fresh = window("--device cpu --fresh", state.path(), 3600);
     assert_ne!(fresh.state().shown_document().stage().unwrap().id, "glass-schlick");
+}
+
+#[test]
+fn the_picture_before_a_check_comes_back_with_its_samples() {
+    let state = tempfile::tempdir().unwrap();
+    let mut first = window(&format!("{PICTURE} --samples 40"), state.path(), 3600);
+    until(&mut first, "the end", has_samples(40));
+    let _checked = drop_file(&mut first, &gradient(false));
+    until_compared(&mut first);
+    assert_ne!(first.state().shown_document().stage().unwrap().id, "glass-schlick");
+    first.state_mut().on_exit(None);
+    drop(first);
+    let mut next = window("--device cpu", state.path(), 3600);
+    until(&mut next, "its samples", |window| held(window) == 40);
+    assert_eq!(next.state().shown_document().camera.vfov_degrees, 31.0);
 }
 
 fn says(window: &Window, words: &str) -> bool {

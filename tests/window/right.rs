@@ -12,7 +12,7 @@ use weekender::stages::Stage;
 
 /// The picture of stage 2.1 at 160 × 90, as the book's first program writes it; `upside_down`, if it counts rows from
 /// the wrong end.
-fn gradient(upside_down: bool) -> Vec<u8> {
+pub fn gradient(upside_down: bool) -> Vec<u8> {
     let share = |at: u32, count: u32| (255.999 * f64::from(at) / f64::from(count - 1)) as u8;
     let row = |y: u32| if upside_down { 89 - y } else { y };
     let pixels = (0..90).flat_map(|y| (0..160).map(move |x| [x, y]));
@@ -34,7 +34,7 @@ impl egui::DroppedFile for Dropped {
 }
 
 /// Drops a file on the window.
-fn drop_file(harness: &mut Harness<'_, Window>, content: &[u8]) -> tempfile::TempDir {
+pub fn drop_file(harness: &mut Harness<'_, Window>, content: &[u8]) -> tempfile::TempDir {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("mine.ppm");
     std::fs::write(&path, content).unwrap();
@@ -43,7 +43,7 @@ fn drop_file(harness: &mut Harness<'_, Window>, content: &[u8]) -> tempfile::Tem
 }
 
 /// Waits until the picture of a check is shown beside that of its stage.
-fn until_compared(harness: &mut Harness<'_, Window>) {
+pub fn until_compared(harness: &mut Harness<'_, Window>) {
     until(harness, "both pictures", |window| {
         window.is_comparing() && window.has_other_picture() && has_samples(1)(window)
     });

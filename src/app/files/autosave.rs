@@ -15,6 +15,7 @@ use crate::system::files::{lock_path, write_text};
 use eframe::egui::Context;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Writing films takes at most 1 / `SHARE` of the time.
@@ -289,9 +290,18 @@ impl Autosave {
             let _ = write_edits(&place.edits(), &changes.last_steps(&model.document, STEPS));
         }
         let is_kept = self.place.is_some() || is_panic;
-        if is_kept && !self.is_restoring && tracing.main.has_samples(&model.document) {
-            let describe = describer(&model.document, tracing.main.status(), tracing.seconds_before);
-            if let Some(film) = tracing.main.take_film().filter(|film| film.sample_count() > 0) {
+        if is_kept && !self.is_restoring {
+            // A film may still wait for the run that continues it.
+            let (film, status) = match tracing.film.take() {
+                Some(film) => (Some(film), Arc::default()),
+                None if tracing.main.has_samples(&model.document) => {
+                    let status = Arc::clone(tracing.main.status());
+                    (tracing.main.take_film(), status)
+                }
+                None => (None, Arc::default()),
+            };
+            if let Some(film) = film.filter(|film| film.sample_count() > 0) {
+                let describe = describer(&model.document, &status, tracing.seconds_before);
                 self.save_last(&film, &describe(&film), &model.document.name());
             }
         }

@@ -354,6 +354,7 @@ impl Window {
     fn end(&mut self) {
         self.stop_play();
         self.files.end();
+        self.end_check();
         self.autosave.end(&self.model, &self.changes, &mut self.tracing);
     }
 }

@@ -489,8 +489,8 @@ impl Window {
         }
     }
 
-    /// Returns to what was shown before the pictures of a check.
-    fn end_check(&mut self) {
+    /// Returns to what was shown before the pictures of a check, and to its film.
+    pub(super) fn end_check(&mut self) {
         self.model.view.kept.mine = None;
         let Some(CheckVisit { visit, mut film, seconds }) = self.display.check.take() else { return };
         self.end_sight();
@@ -500,7 +500,7 @@ impl Window {
         }
         self.model.selected = None;
         self.tools.forget();
-        if let Some(Ok(film)) = film.take()
+        if let Some(Ok(film)) = film.wait()
             && [film.width(), film.height()] == self.document().size()
         {
             self.adopt(film, seconds);
