@@ -1,7 +1,7 @@
 //! From TOML to a recipe: serde checks the form, [`recipe_of`] the values.
 
 use super::named;
-use super::table::Table;
+use super::table::{Table, added_material};
 use crate::job::recipe::{DEFAULT_SAMPLES_PER_PIXEL, Recipe};
 use crate::job::render::{DEPTH_LIMIT, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::scene::animation::{FRAME_LIMIT, Keyframe};
@@ -381,23 +381,6 @@ fn material_of(
              0.8] }}"
         )),
     }
-}
-
-/// Adds the own material of a sphere, which gets a unique name, and returns its index.
-pub(super) fn added_material(
-    sphere: usize,
-    material: Material,
-    scene: &mut Scene,
-    index_of: &mut HashMap<String, usize>,
-) -> Result<usize, String> {
-    material.validate(format_args!("spheres[{sphere}].material")).map_err(|error| error.to_string())?;
-    let mut name = format!("sphere-{sphere}");
-    while index_of.contains_key(&name) {
-        name.push('*');
-    }
-    let index = scene.add_material(name.clone(), material);
-    index_of.insert(name, index);
-    Ok(index)
 }
 
 /// The camera. `base` has the values of missing keys; without it, some keys are required.

@@ -1,7 +1,6 @@
 //! The spheres of a scene of many as a table: CSV, in a file of its own or in a string of the scene file. TOML takes 3 kB
 //! of memory per sphere.
 
-use super::read::added_material;
 use crate::scene::{Material, Scene, Sphere, missing_material};
 use crate::system::files::{self, InputError, ShownPath};
 use crate::system::memory;
@@ -82,6 +81,23 @@ impl<'a> Table<'a> {
         }
         Ok(())
     }
+}
+
+/// Adds the own material of a sphere, which gets a unique name, and returns its index.
+pub(super) fn added_material(
+    sphere: usize,
+    material: Material,
+    scene: &mut Scene,
+    index_of: &mut HashMap<String, usize>,
+) -> Result<usize, String> {
+    material.validate(format_args!("spheres[{sphere}].material")).map_err(|error| error.to_string())?;
+    let mut name = format!("sphere-{sphere}");
+    while index_of.contains_key(&name) {
+        name.push('*');
+    }
+    let index = scene.add_material(name.clone(), material);
+    index_of.insert(name, index);
+    Ok(index)
 }
 
 /// The values of a row.
