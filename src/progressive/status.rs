@@ -130,6 +130,12 @@ impl Status {
         status
     }
 
+    /// Tracing time of one sample per pixel, seconds, as measured since the start.
+    pub fn seconds_per_sample(&self) -> f64 {
+        let samples = if self.added() > 0 { self.added() } else { self.samples_per_pixel };
+        self.trace.as_secs_f64() / samples.max(1) as f64
+    }
+
     /// Samples per pixel that were added since the start.
     pub fn added(&self) -> u64 {
         self.contributions.iter().map(|part| part.samples_per_pixel).sum()

@@ -11,7 +11,7 @@ use std::path::Path;
 use std::time::Duration;
 use weekender::app::{Command, Device, Dock, Show, Theme, Window};
 use weekender::cli::{self, Request, WindowOptions};
-use weekender::film::checkpoint;
+use weekender::film::{checkpoint, key};
 use weekender::progressive::Stop;
 use weekender::stages::{Means, Stage};
 
@@ -77,6 +77,25 @@ fn the_picture_before_a_check_comes_back_with_its_samples() {
     let mut next = window("--device cpu", state.path(), 3600);
     until(&mut next, "its samples", |window| held(window) == 40);
     assert_eq!(next.state().shown_document().camera.vfov_degrees, 31.0);
+}
+
+/// Another picture that is opened next must not replace it.
+#[test]
+fn a_long_film_is_offered_to_the_next_window() {
+    for (seconds, is_offered) in [(59, false), (61, true)] {
+        let state = tempfile::tempdir().unwrap();
+        let film = state.path().join("autosave.exr");
+        let mut first = window(&format!("{PICTURE} --samples 40"), state.path(), 3600);
+        until(&mut first, "the end", has_samples(40));
+        first.state_mut().on_exit(None);
+        drop(first);
+        let saved = checkpoint::load(&film).unwrap();
+        let mut description = saved.description;
+        description.set(key::SECONDS, seconds);
+        checkpoint::save(&film, &saved.film, &description).unwrap();
+        let next = window("--stage metal --size 32x18 --device cpu", state.path(), 3600);
+        assert_eq!(has_offer(&next), is_offered, "{seconds}");
+    }
 }
 
 fn says(window: &Window, words: &str) -> bool {

@@ -1,9 +1,9 @@
 //! Films that the window resumes.
 
-use crate::common::{has_samples, open, save, until};
+use crate::common::{has_samples, open, save, send, until};
 use crate::questions::Ask as _;
 use std::path::Path;
-use weekender::app::Command;
+use weekender::app::{Command, Window};
 use weekender::film::checkpoint;
 use weekender::job::output::OutputFormat;
 use weekender::progressive::Stop;
@@ -53,4 +53,23 @@ fn resumed_film_follows_the_flags() {
     // Without a stop condition of its own, it continues as the picture usually would.
     let harness = open(&resume);
     assert_eq!(harness.state().shown_document().stop, Stop { noise: Some(Stop::NOISE), ..Stop::default() });
+}
+
+/// Also where a fresh document of the stage is made.
+#[test]
+fn a_long_render_is_there_again_when_one_comes_back() {
+    let mut harness = open("--stage metal --samples 8 --device cpu");
+    let is_done = |window: &Window| has_samples(8)(window) && window.status().phase.is_over();
+    for (there, back) in [(Command::NextStage, Command::PreviousStage), (Command::NextStage, Command::Undo)] {
+        until(&mut harness, "the end", is_done);
+        harness.state_mut().tracing.seconds_before = Some(60.0);
+        send(&mut harness, there);
+        until(&mut harness, "another picture", has_samples(1));
+        assert_eq!(harness.state().shown_document().stage().unwrap().id, "metal-fuzzy");
+        send(&mut harness, back);
+        until(&mut harness, "its samples", is_done);
+        assert_eq!(harness.state().shown_document().stage().unwrap().id, "metal");
+        assert!(harness.state().status().contributions.is_empty(), "{back:?}: nothing was traced again");
+        assert!(harness.state().tracing.seconds().unwrap() >= 60.0);
+    }
 }

@@ -302,7 +302,15 @@ table! {
     ZoomOut "Zoom out", "Ctrl and the wheel zoom at the pointer", key(Key::OpenBracket);
     Denoise "Denoise", "Filters the noise away and says how wrong the result is; films are saved as they are",
         key(Key::V),
-        needs(|f| f.document().settings.estimate_error, "The film has one half; denoising compares two"),
+        off(|f| match f.model.view.mode() {
+            _ if !f.document().settings.estimate_error => {
+                Some("The film has one half; denoising compares two".to_owned())
+            }
+            Some(_) if f.model.view.partner != Partner::Raw => {
+                Some("Compared pictures are shown raw; compare with Without denoising instead".to_owned())
+            }
+            _ => None,
+        }),
         on(|f| f.model.view.is_denoised), also("filter smooth noise clean oidn");
     NextSphere "Next sphere", "Selects the next sphere of the scene", key(Key::Period),
         needs(has_spheres, "There is no sphere in this scene"), also("select");

@@ -53,6 +53,11 @@ impl Dialogs {
         self.open = Some(dialog);
     }
 
+    /// Closes the question before the window closes. Returns whether it was open.
+    pub fn end_leave(&mut self) -> bool {
+        self.open.take_if(|dialog| matches!(dialog, Dialog::Leave(_))).is_some()
+    }
+
     /// Draws the dialog. Returns how it closes.
     pub fn ui(&mut self, ui: &mut Ui, cx: &PanelContext) -> Outcome {
         let Some(dialog) = self.open.as_mut() else { return Outcome::Stay };

@@ -97,7 +97,7 @@ fn row_ui(ui: &mut Ui, row: Command, is_chosen: bool, snapshot: &Snapshot) -> Re
         _ => ("", "", ""),
     };
     let mut words = LayoutJob::default();
-    let done = RichText::new(if is_done { "  ✔ yours is right\n" } else { "\n" });
+    let done = RichText::new(if is_done { "  yours is right\n" } else { "\n" });
     let done = done.small().color(theme::colours(ui).good);
     for text in [RichText::new(over).small().weak(), done, RichText::new(title).strong()] {
         text.append_to(&mut words, ui.style(), FontSelection::Default, Align::Center);

@@ -27,6 +27,9 @@ const AT_ONCE: usize = 10_000;
 /// How long to wait for the lock of a window that is closing.
 const PATIENCE: Duration = Duration::from_millis(200);
 
+/// A film that took so long is not replaced by that of another picture, seconds of tracing.
+const LONG_SECONDS: f64 = 60.0;
+
 /// File name prefix of recovered files that wait for the user's decision.
 const LEFT: &str = "recovered";
 
@@ -160,7 +163,7 @@ pub struct Autosave {
 
 impl Autosave {
     /// Saves edits in `directory` at once, and films of renders longer than `every` at that interval. Returns the last
-    /// window's document if `goes_on`; otherwise, if that window crashed, its files are kept.
+    /// window's document if `goes_on`; otherwise, its film is kept if it took long, and all of its files if it crashed.
     pub fn new(directory: Option<&Path>, every: Duration, goes_on: bool) -> (Self, Last) {
         let claimed = directory.and_then(Place::claim);
         let mut last = Last::default();
@@ -170,7 +173,11 @@ impl Autosave {
                 steps.extend(picture_of(&film).map(|(document, _)| document));
             }
             let with_film = steps.last().and_then(|document| with_film(document, &film));
-            if *has_ended_early && !(goes_on && with_film.is_some()) {
+            let is_long = || {
+                let seconds = Saved::describe(&film).ok().and_then(|saved| saved.seconds());
+                seconds.is_some_and(|seconds| seconds >= LONG_SECONDS)
+            };
+            if !(goes_on && with_film.is_some()) && (*has_ended_early || is_long()) {
                 place.set_aside(&film);
             }
             if !goes_on && *has_ended_early && with_film.is_none() && steps.iter().any(Document::is_changed) {

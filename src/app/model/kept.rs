@@ -96,8 +96,8 @@ impl Kept {
             None => {
                 let film = Film::try_new(picture.width, picture.height, 1);
                 let mut film = film.map_err(|error| words(&error))?;
-                // A file stores no light above white, and marks it so.
-                let known = |x: f64| if x.is_nan() { picture.limit.min(1.0) } else { x.max(0.0) };
+                // A file stores no light above white, and marks white so.
+                let known = |x: f64| if x.is_nan() { 1.0 } else { x.max(0.0) };
                 for (sum, pixel) in film.halves_mut()[0].iter_mut().zip(&picture.pixels) {
                     *sum = fixed_point(pixel.map(known)).unwrap_or_default();
                 }

@@ -181,10 +181,15 @@ impl ViewState {
         }
     }
 
+    /// Whether the denoised picture is to be shown. Of pictures that are compared, both are raw, unless that is the question.
+    pub fn shows_denoised(&self) -> bool {
+        self.is_denoised && (self.mode.is_none() || self.partner == Partner::Raw)
+    }
+
     /// The denoised picture of a run's film, if it is to be shown.
     pub fn denoised_of(&self, run: u64) -> Option<&Arc<Denoised>> {
         match &self.denoised {
-            Some((of, Ok(denoised))) if self.is_denoised && *of == run => Some(denoised),
+            Some((of, Ok(denoised))) if self.shows_denoised() && *of == run => Some(denoised),
             _ => None,
         }
     }

@@ -292,6 +292,9 @@ pub fn prediction(status: &Status, target: Option<f64>) -> Option<Prediction> {
         return None;
     }
     let error = status.error?;
+    // As if the samples that the film held at the start had been traced at the same speed.
+    let all = status.samples_per_pixel as f64 * status.seconds_per_sample();
+    let before = all - status.trace.as_secs_f64();
     // Switching the backend bends the curve, so only the current backend's points are used.
     let backend = status.history.last().map(|point| point.backend);
     let mut history: Vec<Point> = status
@@ -301,10 +304,10 @@ pub fn prediction(status: &Status, target: Option<f64>) -> Option<Prediction> {
         .take_while(|point| {
             Some(point.backend) == backend && point.samples_per_pixel >= NOISE_TARGET_FIRST_SAMPLES
         })
-        .map(|point| Point { time: point.trace_seconds, error: point.rmse_estimate })
+        .map(|point| Point { time: before + point.trace_seconds, error: point.rmse_estimate })
         .collect();
     history.reverse();
-    let now = Point { time: status.trace.as_secs_f64(), error: error.rmse };
+    let now = Point { time: all, error: error.rmse };
     let from_now = |time: f64| (time - now.time).max(0.0);
     predict(&history, now, target?)
         .map(|found| Prediction { time: from_now(found.time), range: found.range.map(from_now) })
@@ -315,7 +318,8 @@ pub fn prediction(status: &Status, target: Option<f64>) -> Option<Prediction> {
 mod tests {
     use super::*;
     use crate::film::ErrorEstimate;
-    use crate::progressive::Phase;
+    use crate::job::render::BackendInfo;
+    use crate::progressive::{Contribution, Phase};
     use std::time::Duration;
 
     fn point(backend: &'static str, samples: u64, trace_seconds: f64) -> HistoryPoint {
@@ -359,6 +363,11 @@ mod tests {
         assert!(found.range[0] < 30.0 && found.range[1] > 30.0, "{found:?}");
         assert_eq!(prediction(&status, Some(0.01)), None);
         assert_eq!(prediction(&status, None), None);
+        // A quarter of the samples is of this run, which takes as long for each of them.
+        let backend = BackendInfo { name: "cpu", device: String::new(), lanes: 1, threads: 1 };
+        status.contributions = vec![Contribution { backend, samples_per_pixel: 25 }];
+        assert!((prediction(&status, Some(0.002)).unwrap().time - 120.0).abs() < 1e-6);
+        status.contributions.clear();
         for (samples, is_predicted) in
             [(NOISE_TARGET_FIRST_SAMPLES - 1, false), (NOISE_TARGET_FIRST_SAMPLES, true)]
         {

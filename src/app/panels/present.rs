@@ -9,7 +9,7 @@ use crate::progressive::Phase;
 use crate::stages::Stage;
 use eframe::egui::{
     self, Align, Color32, Context, CursorIcon, FontFamily, FontId, Frame, Label, Layout, Margin, Panel, Rect,
-    RichText, Role, Sense, Sides, Style, TextStyle, Ui, WidgetInfo, vec2,
+    RichText, Role, Sense, Sides, Style, TextStyle, Ui, UiBuilder, WidgetInfo, vec2,
 };
 
 /// Text sizes in hundredths of the height: the largest that has room is used.
@@ -49,7 +49,12 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext, numbers: Option<impl FnOnce(&mut Ui)>)
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(words));
         });
     });
-    bottom("present texts", 16.0 * unit, margin).show(ui, |ui| columns(ui, unit, texts(cx), numbers));
+    bottom("present texts", 16.0 * unit, margin).show(ui, |ui| {
+        // Whatever stands there, the picture keeps its room.
+        let room = ui.available_rect_before_wrap();
+        ui.allocate_rect(room, Sense::hover());
+        columns(&mut ui.new_child(UiBuilder::new().max_rect(room)), unit, texts(cx), numbers);
+    });
     let title_bar = Panel::top("present title").exact_size(9.0 * unit).show_separator_line(false);
     title_bar.frame(frame(margin)).show(ui, |ui| ui.horizontal_centered(|ui| title(ui, unit, cx)));
 }
@@ -151,8 +156,8 @@ fn columns(ui: &mut Ui, unit: f32, texts: [(&str, &str); 2], mut numbers: Option
                 ui.set_width(width);
                 if let Some(numbers) = numbers.take_if(|_| place == 1) {
                     enlarge(&ui.ctx().clone(), ui.style_mut());
-                    // Under their header, four rows of a line and a third have room.
-                    let most = (rows - 28.0) / (4.0 * 4.0 / 3.0);
+                    // Under their header, five rows of a line and a third have room.
+                    let most = (rows - 28.0) / (5.0 * 4.0 / 3.0);
                     let small = ui.style_mut().text_styles.get_mut(&TextStyle::Small);
                     small.into_iter().for_each(|font| font.size = font.size.min(most));
                     return numbers(ui);

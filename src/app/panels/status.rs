@@ -147,8 +147,7 @@ pub fn sentence(snapshot: &Snapshot) -> String {
         }
         _ => match stop.samples {
             Some(end) => {
-                let per_sample = status.trace.as_secs_f64() / count as f64;
-                let left = time(per_sample * end.saturating_sub(count) as f64);
+                let left = time(status.seconds_per_sample() * end.saturating_sub(count) as f64);
                 let samples = format!("{} of {}", grouped(count), samples_words(end));
                 format!("{samples}{error}; done in about {left}")
             }
@@ -160,7 +159,7 @@ pub fn sentence(snapshot: &Snapshot) -> String {
 /// The error of the denoised picture of the traced film, or why there is none, if it is to be shown.
 fn denoised_error(snapshot: &Snapshot) -> Option<Result<DenoisedError, &str>> {
     let view = &snapshot.model.view;
-    let (run, found) = view.denoised.as_ref().filter(|_| view.is_denoised)?;
+    let (run, found) = view.denoised.as_ref().filter(|_| view.shows_denoised())?;
     let outcome = found.as_ref().map(|denoised| denoised.error).map_err(String::as_str);
     (*run == snapshot.status.run && outcome != Err("")).then_some(outcome)
 }

@@ -300,6 +300,8 @@ fn decimals(value: f64) -> String {
 }
 
 fn signed(value: f64) -> String {
+    // Not −0.0000.
+    let value = (value * 1e4).round() / 1e4 + 0.0;
     format!("{value:+.4}").replace('-', "−")
 }
 

@@ -41,7 +41,7 @@ impl ToneUi {
         self.is_open = false;
         let (show, channel) = (view.show(), view.tone.channel);
         let mut summary = vec![show.name().trim_end_matches('…').to_lowercase()];
-        summary.extend(view.is_denoised.then(|| "denoised".to_owned()));
+        summary.extend(view.shows_denoised().then(|| "denoised".to_owned()));
         summary.extend(channel.map(|channel| channel.name().to_lowercase()));
         if view.tone.exposure != 0.0 {
             let sign = if view.tone.exposure > 0.0 { "+" } else { "" };

@@ -9,7 +9,7 @@ pub mod tracer;
 
 use crate::app::model::changes::Changes;
 use crate::app::model::{Device, Document, Model, Partner, Sizing};
-use crate::app::toolkit::Toasts;
+use crate::app::toolkit::{Answers, Toasts};
 use crate::film::Film;
 use crate::progressive::{HistoryPoint, Phase, Status, Stop};
 use eframe::egui::{Context, Vec2};
@@ -36,6 +36,8 @@ pub struct Tracing {
     pub seconds_before: Option<f64>,
     /// The film with which the next run begins.
     pub film: Option<Film>,
+    /// The last picture that was left after it had been traced for long.
+    left: Option<Left>,
     /// Why the document cannot be rendered; `None` if it can.
     pub invalid: Option<String>,
     /// The run, and how many of its messages and failures have been seen.
@@ -43,6 +45,14 @@ pub struct Tracing {
     turn: Option<Turn>,
     /// The curves of renders of the same picture that were started again, and that picture.
     earlier: Option<(Document, Vec<HistoryPoint>)>,
+}
+
+/// A picture that was left for another one. One that comes back to it finds its samples.
+struct Left {
+    document: Document,
+    film: Answers<Film>,
+    /// Tracing time of its samples, if known.
+    seconds: Option<f64>,
 }
 
 /// Two devices trace in turns, so that neither has processors of the other and the speeds of both are true.
@@ -64,6 +74,7 @@ impl Tracing {
             sizer: Sizer::default(),
             seconds_before: Some(0.0),
             film: None,
+            left: None,
             invalid: None,
             seen: (0, 0, 0),
             turn: None,
@@ -96,6 +107,7 @@ impl Tracing {
         curves.extend(&self.main.status().history);
         self.earlier = Some((document.clone(), curves));
         self.seconds_before = Some(0.0);
+        self.left = None;
         self.main.started = None;
         self.second.tracer.iter_mut().for_each(|tracer| tracer.started = None);
     }
@@ -117,6 +129,33 @@ impl Tracing {
     /// The other picture of a comparison, once it has samples.
     pub fn other<'a>(&'a self, model: &'a Model) -> Option<Other<'a>> {
         self.second.other(model, &self.main)
+    }
+
+    /// Keeps the film of the picture, which is about to be left.
+    pub fn keep(&mut self, context: &Context) {
+        let Some(document) = self.main.started.as_ref().map(|run| run.document().clone()) else { return };
+        if self.main.has_samples(&document) {
+            let mut film = Answers::default();
+            let answer = film.answer(context);
+            self.main.inspect(move |film| answer.give(film.try_copy().map_err(|error| error.to_string())));
+            self.left = Some(Left { document, film, seconds: self.seconds() });
+        }
+    }
+
+    /// If the picture that is traced is left for `document`, keeps its film if that was traced for long. If `document` was
+    /// left before, returns the film of then, and its tracing time.
+    pub fn leave(&mut self, context: &Context, document: &Document) -> Option<(Film, Option<f64>)> {
+        let traced = self.main.started.as_ref()?.document();
+        if traced.has_same_film(document) || self.film.is_some() {
+            return None;
+        }
+        let is_kept = self.left.as_ref().is_some_and(|left| left.document.has_same_film(traced));
+        let back = self.left.take_if(|left| left.document.is_same_picture(document));
+        if !is_kept && self.seconds().is_none_or(|seconds| seconds > LONG_SECONDS) {
+            self.keep(context);
+        }
+        let Left { mut film, seconds, .. } = back?;
+        Some((film.wait()?.ok()?, seconds))
     }
 
     /// Gives the document the size that fits the window, unless its samples are worth more or are needed.

@@ -65,6 +65,12 @@ pub struct Started {
     is_held: bool,
 }
 
+impl Started {
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+}
+
 /// A picture on the screen.
 pub struct Shown {
     /// The texture of the picture.

@@ -5,13 +5,12 @@ use super::pixel_values::PixelValues;
 use super::visit::Visit;
 use crate::app::model::spheres::is_lost;
 use crate::app::model::{CheckedScene, Model, Show};
-use crate::app::toolkit::{Answers, Toasts};
+use crate::app::toolkit::Toasts;
 use crate::app::tools::tone::ToneUi;
 use crate::app::tracing::Tracing;
 use crate::app::tracing::kept::KeptActions;
 use crate::app::tracing::layers::Layers;
 use crate::app::tracing::subject::{Denoising, Subject};
-use crate::film::Film;
 use crate::scene::Camera;
 use eframe::egui::Context;
 use std::sync::Arc;
@@ -30,15 +29,8 @@ pub struct Display {
     judged: Option<(Camera, Arc<CheckedScene>)>,
     /// What "Show me" has changed, to return to.
     pub sight: Option<Visit>,
-    pub check: Option<CheckVisit>,
-}
-
-/// The pictures of a check. What was shown before is shown again with all its samples.
-pub struct CheckVisit {
-    pub visit: Visit,
-    /// The film of before, and how long it was traced, seconds.
-    pub film: Answers<Film>,
-    pub seconds: Option<f64>,
+    /// The pictures of a check.
+    pub check: Option<Visit>,
 }
 
 impl Display {

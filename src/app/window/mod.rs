@@ -248,6 +248,10 @@ impl Window {
     /// Asks before the window closes while a picture is still rendered to be saved.
     fn follow_close(&mut self, context: &egui::Context) {
         let is_asked = context.input(|input| input.viewport().close_requested());
+        // What was asked about may be saved by now.
+        if self.files.unsaved().is_none() && self.shell.dialogs.end_leave() {
+            self.shell.leaves_when_saved = true;
+        }
         let unsaved = self.files.unsaved().filter(|_| is_asked && !self.shell.is_interrupted());
         if let Some(name) = unsaved {
             context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
@@ -286,6 +290,7 @@ impl Window {
         let needs_film =
             self.files.needs_film() || self.autosave.is_restoring || self.model.other_device().is_some();
         self.tracing.follow_size(context, &mut self.model, room, needs_film);
+        self.find_left(context);
         if self.changes.follow(context, &self.model.document) {
             self.tracing.seconds_before = Some(0.0);
             self.model.view.end_look();
@@ -355,6 +360,7 @@ impl Window {
         self.stop_play();
         self.files.end();
         self.end_check();
+        self.find_left(&egui::Context::default());
         self.autosave.end(&self.model, &self.changes, &mut self.tracing);
     }
 }

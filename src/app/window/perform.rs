@@ -14,9 +14,8 @@ use crate::app::model::{
     Body, Device, Dock, Document, Edit, Mode, Model, Origin, Partner, Presentation, Remembered, Show, Source,
     Tab, Tone, companion, device, navigation,
 };
+use crate::app::toolkit::Finder;
 use crate::app::toolkit::widgets::{focus, samples_words};
-use crate::app::toolkit::{Answers, Finder};
-use crate::app::viewport::display::CheckVisit;
 use crate::app::viewport::visit::Visit;
 use crate::cli::{FramesOptions, ProgressChoice};
 use crate::film::Film;
@@ -446,33 +445,24 @@ impl Window {
     fn visit_checked(&mut self, context: &Context) {
         let Some((stage, mine)) = self.tools.check.found() else { return };
         let size = mine.size();
-        let begun = self.display.check.take().filter(|check| check.visit.is_of(self.document()));
+        let begun = self.display.check.take().filter(|visit| visit.is_of(self.document()));
         let is_shown = self.document().stage() == Some(stage) && self.document().size() == size;
         if begun.is_some() && is_shown {
             self.display.check = begun;
             return;
         }
         self.end_sight();
-        let check = begun.unwrap_or_else(|| self.begin_visit(context));
+        let visit = begun.unwrap_or_else(|| {
+            self.tracing.keep(context);
+            Visit::from(&self.model.document, &self.model.view, &self.display.viewport.placement)
+        });
         let tab = self.model.remembered.tab;
         let mut document = self.fresh(Origin::of_stage(stage));
         document.give_size(size);
         self.show_document(document);
         self.model.remembered.tab = tab;
         self.display.viewport.placement.fit();
-        let visit = check.visit.at(self.document(), &self.model.view);
-        self.display.check = Some(CheckVisit { visit, ..check });
-    }
-
-    fn begin_visit(&self, context: &Context) -> CheckVisit {
-        let (document, placement) = (self.document(), &self.display.viewport.placement);
-        let (mut film, seconds) = (Answers::default(), self.tracing.seconds());
-        if self.tracing.main.has_samples(document) {
-            let answer = film.answer(context);
-            let copy = move |film: &Film| answer.give(film.try_copy().map_err(|error| error.to_string()));
-            self.tracing.main.inspect(copy);
-        }
-        CheckVisit { visit: Visit::from(document, &self.model.view, placement), film, seconds }
+        self.display.check = Some(visit.at(self.document(), &self.model.view));
     }
 
     /// Takes what a check has found, and shows it if the check is in sight.
@@ -492,18 +482,12 @@ impl Window {
     /// Returns to what was shown before the pictures of a check, and to its film.
     pub(super) fn end_check(&mut self) {
         self.model.view.kept.mine = None;
-        let Some(CheckVisit { visit, mut film, seconds }) = self.display.check.take() else { return };
+        let Some(visit) = self.display.check.take() else { return };
         self.end_sight();
         let (document, view) = (&mut self.model.document, &mut self.model.view);
-        if !visit.end(document, view, &mut self.display.viewport.placement) {
-            return;
-        }
-        self.model.selected = None;
-        self.tools.forget();
-        if let Some(Ok(film)) = film.wait()
-            && [film.width(), film.height()] == self.document().size()
-        {
-            self.adopt(film, seconds);
+        if visit.end(document, view, &mut self.display.viewport.placement) {
+            self.model.selected = None;
+            self.tools.forget();
         }
     }
 
@@ -656,6 +640,13 @@ impl Window {
     }
 
     /// Goes on with this film of the document.
+    /// Goes on with the film of a picture that was left before and is shown again.
+    pub(super) fn find_left(&mut self, context: &Context) {
+        if let Some((film, seconds)) = self.tracing.leave(context, &self.model.document) {
+            self.adopt(film, seconds);
+        }
+    }
+
     pub(super) fn adopt(&mut self, film: Film, seconds: Option<f64>) {
         (self.tracing.film, self.tracing.seconds_before) = (Some(film), seconds);
         self.changes.last = self.model.document.clone();
@@ -763,7 +754,7 @@ impl Window {
         }
     }
 
-    /// Offers what a window has left that ended early, if the user has not answered yet.
+    /// Offers what an earlier window has left, if the user has not answered yet.
     pub(super) fn offer_left(&mut self) {
         let Some((document, samples)) = self.autosave.offer() else { return };
         let name = document.place();
@@ -771,7 +762,7 @@ impl Window {
             Some(samples) => format!("{name} with {}", samples_words(samples)),
             None => format!("{name} with your changes"),
         };
-        let words = format!("A window ended early: {what} was saved.");
+        let words = format!("An earlier window has left {what}.");
         self.shell.toasts.offer(words, &[Command::Recover, Command::DeleteLeft]);
     }
 

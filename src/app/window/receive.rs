@@ -128,7 +128,10 @@ impl Window {
     fn follow_scene_file(&mut self, context: &Context) {
         let origin = Arc::clone(&self.document().origin);
         self.files.scene_file.watch(context, &origin);
-        let Source::File(path) = &origin.source else { return };
+        let Source::File(path) = &origin.source else {
+            self.shell.toasts.end_error("Not reloaded");
+            return;
+        };
         let name = name_of(path);
         while let Some(recipe) = self.files.scene_file.reread.take() {
             let is_own = self.document().checked.file().is_some_and(|saved| saved == *path);
@@ -140,9 +143,9 @@ impl Window {
                     self.shell.toasts.end_error("Not reloaded");
                     self.shell.toasts.good(format!("Reloaded {name}; Undo returns"));
                 }
-                Err(reason) => self.shell.toasts.bad(format!(
-                    "Not reloaded: {reason}. The picture shows the last version that could be read"
-                )),
+                Err(reason) => {
+                    self.shell.toasts.bad(format!("Not reloaded: {reason}. The picture stays as it is"))
+                }
             }
         }
     }

@@ -172,7 +172,7 @@ pub fn judge(mine: &Mine, stage: Option<&'static Stage>, mut say: impl FnMut(Str
 /// Judges a picture of this stage.
 fn judge_of(mine: &Mine, stage: &'static Stage, say: &mut impl FnMut(String)) -> Result<Finding> {
     if stage.setup.has_random_spheres {
-        say(format!("looking for what all pictures of {} have in common", stage.id));
+        say(format!("looking for what all pictures of {} {} have in common", stage.section, stage.title));
     }
     let fixed = fixed(mine, stage)?;
     let mut found = judge_among(&fixed, &[stage], say)?.context("there is no stage to compare with")?;
@@ -189,7 +189,7 @@ fn judge_among(
 ) -> Result<Option<Finding>> {
     let (mut trials, mut findings) = (Vec::new(), Vec::new());
     for stage in stages {
-        say(format!("comparing with {}", stage.id));
+        say(format!("comparing with {} {}", stage.section, stage.title));
         let trial = Trial::new(mine, stage)?;
         if !trial.right.is_noise {
             trials.push(trial);
@@ -205,7 +205,7 @@ fn judge_among(
         if findings.iter().any(Finding::is_other_right) {
             break;
         }
-        say(format!("trying the mistakes of {}", trial.stage.id));
+        say(format!("trying the mistakes of {} {}", trial.stage.section, trial.stage.title));
         findings.push(trial.finding()?);
     }
     findings.sort_by(Finding::closeness);

@@ -167,8 +167,8 @@ impl Columns {
         }
         if found != self.count {
             return Err(format!(
-                "spheres[{index}] has {found} values, but the table has {} columns; separate the values by commas, and \
-                 write a point in a number",
+                "spheres[{index}] should have {} values, one for each column, and has {found}; separate the values by \
+                 commas, and write a point in a number",
                 self.count
             ));
         }
