@@ -82,9 +82,9 @@ fn a_wrong_table_is_refused_with_its_line() {
     for (old, new, line, parts) in [
         ("2,0.5", "2,0", 3, &["spheres[1].radius is 0", "between 1e-18 and 1e18", "give the sphere"][..]),
         ("0.25", "nan", 3, &["spheres[1].center.y is NaN"]),
-        ("0.25", "0,25", 3, &["6 values", "5 columns", "write a point"]),
+        ("0.25", "0,25", 3, &["have 5 values", "has 6", "write a point"]),
         ("0.25", "zero", 3, &["spheres[1].y is \"zero\"", "a number such as"]),
-        ("1e3,ball", "1e3", 2, &["4 values"]),
+        ("1e3,ball", "1e3", 2, &["has 4"]),
         ("ball", "bell", 2, &["spheres[0].material is \"bell\"", "add [materials.bell]"]),
         ("radius", "size", 1, &["x,y,z,size,material", "x,y,z,radius"]),
         ("material", "x", 1, &["x,y,z,radius,x", "each once"]),

@@ -290,6 +290,7 @@ impl Window {
         let needs_film =
             self.files.needs_film() || self.autosave.is_restoring || self.model.other_device().is_some();
         self.tracing.follow_size(context, &mut self.model, room, needs_film);
+        self.follow_check();
         self.find_left(context);
         if self.changes.follow(context, &self.model.document) {
             self.tracing.seconds_before = Some(0.0);

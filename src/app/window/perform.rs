@@ -479,7 +479,15 @@ impl Window {
         }
     }
 
-    /// Returns to what was shown before the pictures of a check, and to its film.
+    /// Ends the pictures of a check that was closed.
+    pub(super) fn follow_check(&mut self) {
+        let mine = self.model.view.kept.mine.as_ref();
+        if mine.is_some_and(|mine| mine.name != self.tools.check.name()) {
+            self.end_check();
+        }
+    }
+
+    /// Returns to what was shown before the pictures of a check.
     pub(super) fn end_check(&mut self) {
         self.model.view.kept.mine = None;
         let Some(visit) = self.display.check.take() else { return };
@@ -503,10 +511,6 @@ impl Window {
         {
             self.shell.toasts.good_with(reason, &[Command::RenderAtPartnerSize]);
             self.model.view.end_comparison();
-        }
-        let mine = self.model.view.kept.mine.as_ref();
-        if mine.is_some_and(|mine| mine.name != self.tools.check.name()) {
-            self.end_check();
         }
         let Some(sight) = &self.display.sight else { return };
         if !sight.is_of(&self.model.document) {
