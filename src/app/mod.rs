@@ -228,6 +228,14 @@ mod tests {
         Window::new(options(words)).unwrap()
     }
 
+    #[test]
+    fn a_library_that_is_missing_is_named() {
+        let told = |message: &str| check_libraries(message).map_err(|error| error.to_string());
+        assert_eq!(told("the server does not answer"), Ok(()));
+        let refused = told("cannot open shared object file: (libX11.so.6: No such file)").unwrap_err();
+        assert!(refused.contains("needs libX11.so.6") && refused.contains("install it"), "{refused}");
+    }
+
     fn options(words: &str) -> WindowOptions {
         match parse(words.split_whitespace().map(Into::into)).unwrap() {
             Request::Window(options) => *options,
