@@ -456,7 +456,9 @@ fn without_a_display_the_message_names_the_way_out() {
         .unwrap();
     assert_eq!(output.status.code(), Some(2), "a display that does not answer");
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(told.contains(":4711 does not answer") && told.contains("--batch"), "{told}");
+    // A system without a display may lack its libraries, too.
+    let is_named = told.contains(":4711 does not answer") || told.contains("a window needs lib");
+    assert!(is_named && told.contains("--batch"), "{told}");
 }
 
 /// As with `ssh -X`, and with a factor that no window fits.
