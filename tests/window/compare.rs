@@ -66,16 +66,19 @@ fn two_devices_are_compared_in_numbers() {
         check_figures(&mut harness, ["CPU", label]);
         // The points of both are copied.
         control(&harness, "Copy").click();
-        harness.step();
         let names = |text: &str| {
             let mut names: Vec<String> =
                 text.lines().skip(1).map(|line| line.split(',').next().unwrap().to_owned()).collect();
             names.dedup();
             names
         };
-        let copied = harness.output().platform_output.commands.iter().find_map(|command| match command {
-            OutputCommand::CopyText(text) => Some(names(text)),
-            _ => None,
+        // A click takes a frame or two.
+        let copied = (0..4).find_map(|_| {
+            harness.step();
+            harness.output().platform_output.commands.iter().find_map(|command| match command {
+                OutputCommand::CopyText(text) => Some(names(text)),
+                _ => None,
+            })
         });
         let backend = if other == Device::Gpu { "gpu" } else { "reference" };
         assert_eq!(copied.unwrap(), ["cpu", backend]);
