@@ -2,7 +2,9 @@
 
 use crate::common::{has_samples, open, save, send, until};
 use crate::questions::Ask as _;
+use crate::right::Dropped;
 use std::path::Path;
+use std::sync::Arc;
 use weekender::app::{Command, Window};
 use weekender::film::checkpoint;
 use weekender::job::output::OutputFormat;
@@ -77,4 +79,21 @@ fn a_long_render_is_there_again_when_one_comes_back() {
         assert_eq!(held(harness.state()), samples, "{back:?}: nothing was traced again");
         assert!(harness.state().tracing.seconds().unwrap() >= 60.0);
     }
+}
+
+/// A film that is opened takes its place.
+#[test]
+fn a_long_render_is_there_again_after_a_film_was_opened() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("film.exr");
+    save_film(&path, "");
+    let mut harness = open("--stage metal --size 32x18 --samples 8 --device cpu");
+    until(&mut harness, "the end", |window| has_samples(8)(window) && window.status().phase.is_over());
+    harness.state_mut().tracing.seconds_before = Some(60.0);
+    harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
+    until(&mut harness, "the film", |window| window.status().samples_per_pixel == 40);
+    send(&mut harness, Command::Undo);
+    until(&mut harness, "its samples", |window| window.status().samples_per_pixel == 8);
+    assert_eq!(harness.state().shown_document().stage().unwrap().id, "metal");
+    assert!(harness.state().status().contributions.is_empty(), "nothing was traced again");
 }

@@ -132,11 +132,12 @@ impl Tracing {
     }
 
     /// Keeps the film of the picture, which is about to be left.
-    pub fn keep(&mut self, context: &Context) {
+    pub fn keep(&mut self) {
         let Some(document) = self.main.started.as_ref().map(|run| run.document().clone()) else { return };
         if self.main.has_samples(&document) {
             let mut film = Answers::default();
-            let answer = film.answer(context);
+            // Nothing is drawn when it arrives.
+            let answer = film.answer(&Context::default());
             self.main.inspect(move |film| answer.give(film.try_copy().map_err(|error| error.to_string())));
             self.left = Some(Left { document, film, seconds: self.seconds() });
         }
@@ -144,15 +145,15 @@ impl Tracing {
 
     /// If the picture that is traced is left for `document`, keeps its film if that was traced for long. If `document` was
     /// left before, returns the film of then, and its tracing time.
-    pub fn leave(&mut self, context: &Context, document: &Document) -> Option<(Film, Option<f64>)> {
+    pub fn leave(&mut self, document: &Document) -> Option<(Film, Option<f64>)> {
         let traced = self.main.started.as_ref()?.document();
-        if traced.has_same_film(document) || self.film.is_some() {
+        if traced.has_same_film(document) {
             return None;
         }
         let is_kept = self.left.as_ref().is_some_and(|left| left.document.has_same_film(traced));
         let back = self.left.take_if(|left| left.document.is_same_picture(document));
         if !is_kept && self.seconds().is_none_or(|seconds| seconds > LONG_SECONDS) {
-            self.keep(context);
+            self.keep();
         }
         let Left { mut film, seconds, .. } = back?;
         Some((film.wait()?.ok()?, seconds))

@@ -291,7 +291,7 @@ impl Window {
             self.files.needs_film() || self.autosave.is_restoring || self.model.other_device().is_some();
         self.tracing.follow_size(context, &mut self.model, room, needs_film);
         self.follow_check();
-        self.find_left(context);
+        self.find_left();
         if self.changes.follow(context, &self.model.document) {
             self.tracing.seconds_before = Some(0.0);
             self.model.view.end_look();
@@ -361,7 +361,7 @@ impl Window {
         self.stop_play();
         self.files.end();
         self.end_check();
-        self.find_left(&egui::Context::default());
+        self.find_left();
         self.autosave.end(&self.model, &self.changes, &mut self.tracing);
     }
 }

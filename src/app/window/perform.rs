@@ -196,8 +196,8 @@ impl Window {
             C::Wipe => view.toggle(Mode::Wipe),
             C::Flip => view.toggle(Mode::Flip),
             C::Difference => view.toggle(Mode::Difference),
-            C::CompareWith(partner) => self.compare_with(context, partner),
-            C::CompareDevices => self.compare_devices(context),
+            C::CompareWith(partner) => self.compare_with(partner),
+            C::CompareDevices => self.compare_devices(),
             C::CompareFile => self.ask_path(context, Purpose::Compare),
             C::NextPlace => tools
                 .check
@@ -418,9 +418,9 @@ impl Window {
 
     // View
 
-    fn compare_with(&mut self, context: &Context, partner: Partner) {
+    fn compare_with(&mut self, partner: Partner) {
         if partner == Partner::Mine {
-            self.visit_checked(context);
+            self.visit_checked();
         }
         self.model.view.compare_with(partner);
         if matches!(partner, Partner::Device(_)) {
@@ -429,7 +429,7 @@ impl Window {
     }
 
     /// Compares CPU and GPU, or ends that.
-    fn compare_devices(&mut self, context: &Context) {
+    fn compare_devices(&mut self) {
         let other = if self.model.remembered.device == Device::Gpu { Device::Cpu } else { Device::Gpu };
         if self.model.other_device() == Some(other) {
             self.model.view.end_comparison();
@@ -438,11 +438,11 @@ impl Window {
         if !matches!(self.model.remembered.device, Device::Cpu | Device::Gpu) {
             self.model.remembered.device = Device::Cpu;
         }
-        self.compare_with(context, Partner::Device(other));
+        self.compare_with(Partner::Device(other));
     }
 
     /// Traces the stage of the picture that is checked, in its size. The end of the check returns to what is shown now.
-    fn visit_checked(&mut self, context: &Context) {
+    fn visit_checked(&mut self) {
         let Some((stage, mine)) = self.tools.check.found() else { return };
         let size = mine.size();
         let begun = self.display.check.take().filter(|visit| visit.is_of(self.document()));
@@ -453,7 +453,7 @@ impl Window {
         }
         self.end_sight();
         let visit = begun.unwrap_or_else(|| {
-            self.tracing.keep(context);
+            self.tracing.keep();
             Visit::from(&self.model.document, &self.model.view, &self.display.viewport.placement)
         });
         let tab = self.model.remembered.tab;
@@ -466,16 +466,16 @@ impl Window {
     }
 
     /// Takes what a check has found, and shows it if the check is in sight.
-    pub(super) fn take_checked(&mut self, context: &Context) {
+    pub(super) fn take_checked(&mut self) {
         let mine = self.tools.check.found().map(|(_, mine)| Arc::clone(mine));
         let before = std::mem::replace(&mut self.model.view.kept.mine, mine);
         if self.model.view.kept.mine.is_none() {
             self.end_check();
         } else if before.is_none() && self.model.shows(Tab::Check) {
             self.model.view.end_comparison();
-            self.compare_with(context, Partner::Mine);
+            self.compare_with(Partner::Mine);
         } else if self.model.view.compared(self.document()) == Some(Partner::Mine) {
-            self.compare_with(context, Partner::Mine);
+            self.compare_with(Partner::Mine);
         }
     }
 
@@ -645,13 +645,17 @@ impl Window {
 
     /// Goes on with this film of the document.
     /// Goes on with the film of a picture that was left before and is shown again.
-    pub(super) fn find_left(&mut self, context: &Context) {
-        if let Some((film, seconds)) = self.tracing.leave(context, &self.model.document) {
+    pub(super) fn find_left(&mut self) {
+        if self.tracing.film.is_none()
+            && let Some((film, seconds)) = self.tracing.leave(&self.model.document)
+        {
             self.adopt(film, seconds);
         }
     }
 
     pub(super) fn adopt(&mut self, film: Film, seconds: Option<f64>) {
+        // What was traced until now may be worth keeping.
+        drop(self.tracing.leave(&self.model.document));
         (self.tracing.film, self.tracing.seconds_before) = (Some(film), seconds);
         self.changes.last = self.model.document.clone();
     }

@@ -40,7 +40,7 @@ impl Window {
             }
         }
         if self.tools.check.follow(context, &mut self.model.remembered) {
-            self.take_checked(context);
+            self.take_checked();
         }
         while let Some(Ok((picture, what))) = self.files.copied.take() {
             self.shell.toasts.good(format!("Copied the {what}"));
