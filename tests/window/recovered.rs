@@ -28,7 +28,7 @@ fn window(arguments: &str, state: &Path, every: u64) -> Harness<'static, Window>
 }
 
 /// Samples per pixel that the film held when the render began.
-fn held(window: &Window) -> u64 {
+pub fn held(window: &Window) -> u64 {
     let added: u64 = window.status().contributions.iter().map(|part| part.samples_per_pixel).sum();
     window.status().samples_per_pixel.saturating_sub(added)
 }

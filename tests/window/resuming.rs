@@ -2,6 +2,7 @@
 
 use crate::common::{has_samples, open, save, send, until};
 use crate::questions::Ask as _;
+use crate::recovered::held;
 use crate::right::Dropped;
 use std::path::Path;
 use std::sync::Arc;
@@ -62,10 +63,6 @@ fn resumed_film_follows_the_flags() {
 fn a_long_render_is_there_again_when_one_comes_back() {
     let mut harness = open("--stage metal --samples 8 --device cpu");
     let is_done = |window: &Window| has_samples(8)(window) && window.status().phase.is_over();
-    let held = |window: &Window| {
-        let added: u64 = window.status().contributions.iter().map(|part| part.samples_per_pixel).sum();
-        window.status().samples_per_pixel - added
-    };
     for (there, back) in [(Command::NextStage, Command::PreviousStage), (Command::NextStage, Command::Undo)] {
         until(&mut harness, "the end", is_done);
         let samples = harness.state().status().samples_per_pixel;
@@ -91,7 +88,7 @@ fn a_long_render_is_there_again_after_a_film_was_opened() {
     until(&mut harness, "the end", |window| has_samples(8)(window) && window.status().phase.is_over());
     harness.state_mut().tracing.seconds_before = Some(60.0);
     harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
-    until(&mut harness, "the film", |window| window.status().samples_per_pixel == 40);
+    until(&mut harness, "the film", |window| held(window) == 40);
     send(&mut harness, Command::Undo);
     until(&mut harness, "its samples", |window| window.status().samples_per_pixel == 8);
     assert_eq!(harness.state().shown_document().stage().unwrap().id, "metal");
