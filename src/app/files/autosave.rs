@@ -28,7 +28,7 @@ const AT_ONCE: usize = 10_000;
 const PATIENCE: Duration = Duration::from_millis(200);
 
 /// A film that took so long is not replaced by that of another picture, seconds of tracing.
-const LONG_SECONDS: f64 = 60.0;
+const WORTH_SECONDS: f64 = 60.0;
 
 /// File name prefix of recovered files that wait for the user's decision.
 const LEFT: &str = "recovered";
@@ -175,7 +175,7 @@ impl Autosave {
             let with_film = steps.last().and_then(|document| with_film(document, &film));
             let is_long = || {
                 let seconds = Saved::describe(&film).ok().and_then(|saved| saved.seconds());
-                seconds.is_some_and(|seconds| seconds >= LONG_SECONDS)
+                seconds.is_some_and(|seconds| seconds >= WORTH_SECONDS)
             };
             if !(goes_on && with_film.is_some()) && (*has_ended_early || is_long()) {
                 place.set_aside(&film);
