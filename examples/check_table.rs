@@ -5,7 +5,7 @@
 //! `cargo run --release --example check_table [MISTAKE...]`; the mistake `right` stands for correct pictures. Mistakes
 //! that Weekender does not know are planted, too: for those, a guess counts as right, and so does no answer.
 
-#[path = "../tests/check/book.rs"]
+#[path = "../tests/program/check/book.rs"]
 mod book;
 
 use book::Book;

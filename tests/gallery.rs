@@ -1,11 +1,11 @@
 //! `weekender gallery`: which stills are rendered again, the state after an interruption or a full disk, and the page.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
-mod gpu_common;
+#[path = "common/mod.rs"]
+mod common;
 mod html_common;
-mod program_common;
 
-use program_common::{ends, names, outcome, weekender};
+use crate::common::program::{ends, names, outcome, weekender};
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -69,7 +69,7 @@ fn ctrl_c_keeps_finished_pictures() {
         command(at, &["--only", "sky,book"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
     assert!(lines.next().unwrap().unwrap().starts_with("sky"));
-    program_common::signal(&child, "INT");
+    crate::common::program::signal(&child, "INT");
     let (code, _, message) = outcome(&child.wait_with_output().unwrap());
     assert_eq!(code, Some(130), "{message}");
     assert!(message.contains("1 picture missing") && message.contains("the same command again"), "{message}");
@@ -87,7 +87,7 @@ fn full_disk_keeps_finished_stills() {
     // Blocks of 512 bytes: the first picture and its description fit, the second does not.
     let limited = format!(
         "ulimit -f 8; exec '{}' gallery --device cpu --out g --only ppm-tiny,sky --progress off",
-        program_common::PROGRAM
+        crate::common::program::PROGRAM
     );
     let (code, _, message) =
         outcome(&Command::new("sh").current_dir(at).args(["-c", &limited]).output().unwrap());

@@ -7,7 +7,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a benchmark may fail like a test")]
 
-#[path = "../../tests/noisy_scenes/mod.rs"]
+#[path = "../../tests/common/noisy_scenes.rs"]
 mod noisy_scenes;
 
 use std::path::Path;

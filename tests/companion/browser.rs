@@ -1,6 +1,7 @@
 //! The page in Chromium: nothing is cut, every diagram moves, and every link of a picture sets it.
 
-use super::{PAGE, gpu_common};
+use super::PAGE;
+use crate::common::gpu;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::process::Command;
@@ -18,7 +19,7 @@ pub fn obstacle() -> Option<String> {
 fn a_reader_can_use_the_page() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
     if let Some(reason) = obstacle() {
-        return gpu_common::skip("BROWSER", &reason);
+        return crate::common::gpu::skip("BROWSER", &reason);
     }
     let page = PAGE.path().join("out/index.html");
     let output = Command::new("node").arg(folder.join("companion/browser.mjs")).arg(page).output().unwrap();

@@ -1,7 +1,7 @@
 //! The check on the page, in Chromium: pictures that are dropped on it get the verdict of this program.
 
-use super::{PAGE, companion, faults, gpu_common};
-use crate::program_common::{json_file, succeeds, weekender};
+use super::{PAGE, companion, faults};
+use crate::common::program::{json_file, succeeds, weekender};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -41,7 +41,7 @@ fn obstacle() -> Option<String> {
 fn pictures(directory: &Path) -> Vec<PathBuf> {
     // Its name looks like a flag.
     succeeds(directory, &["--batch", "--stage", "ppm-gradient", "--size", "64x36", "--out", "./-mine.ppm"]);
-    let mistaken = Path::new(ROOT).join("tests/check/cases/half-bright.png");
+    let mistaken = Path::new(ROOT).join("tests/program/check/cases/half-bright.png");
     fs::copy(mistaken, directory.join("half.png")).unwrap();
     fs::write(directory.join("notes.txt"), "no picture").unwrap();
     let large = [b"P6 2500 1601 255\n".as_slice(), &vec![9; 3 * 2500 * 1601]].concat();
@@ -64,10 +64,10 @@ fn native(directory: &Path, name: &str, stage: &[&str]) -> Result<Value, String>
 #[test]
 fn a_reader_can_check_a_picture() {
     if let Some(reason) = super::browser::obstacle() {
-        return gpu_common::skip("BROWSER", &reason);
+        return crate::common::gpu::skip("BROWSER", &reason);
     }
     if let Some(reason) = obstacle() {
-        return gpu_common::skip("WEB", &reason);
+        return crate::common::gpu::skip("WEB", &reason);
     }
     let directory = TempDir::new().unwrap();
     // Now with the program.

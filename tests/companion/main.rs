@@ -3,15 +3,13 @@
 
 mod browser;
 mod check;
+#[path = "../common/mod.rs"]
+mod common;
 mod faults;
-#[path = "../gpu_common/mod.rs"]
-mod gpu_common;
 #[path = "../html_common/mod.rs"]
 mod html_common;
-#[path = "../program_common/mod.rs"]
-mod program_common;
 
-use program_common::{outcome, signal, until, weekender};
+use crate::common::program::{outcome, signal, until, weekender};
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::Stdio;

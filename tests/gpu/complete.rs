@@ -1,7 +1,7 @@
 //! All requested samples are added, despite long paths, many samples, loops that a driver cuts short, and a device that
 //! leaves samples out.
 
-use super::gpu_common::{cpu, go_on, gpu, job_of, picture_mean, rendered};
+use crate::common::gpu::{cpu, go_on, gpu, job_of, picture_mean, rendered};
 use glam::DVec3;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;

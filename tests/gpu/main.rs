@@ -1,13 +1,14 @@
-//! The GPU renderer: its shaders, its films, and the program that uses it. The tests run on any adapter, even a software
-//! one.
+//! The GPU renderer: its shaders, its films against the CPU's, and the program that uses it. The tests run on any adapter,
+//! even a software one.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
+#[path = "../common/mod.rs"]
+mod common;
 mod complete;
-#[path = "../gpu_common/mod.rs"]
-mod gpu_common;
+mod driver;
+mod faults;
 mod pairs;
 mod program;
-#[path = "../program_common/mod.rs"]
-mod program_common;
 mod renderer;
 mod shaders;
+mod twins;

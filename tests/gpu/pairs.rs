@@ -1,7 +1,7 @@
 //! Compares the GPU with the CPU sample by sample: equal random numbers give equal paths, except for rounding. (Case 13
 //! of docs/numerics.md.)
 
-use super::gpu_common::{cpu, go_on, gpu, job_of, jobs, picture_mean, rendered};
+use crate::common::gpu::{cpu, go_on, gpu, job_of, jobs, picture_mean, rendered};
 use weekender::film::Film;
 use weekender::job::render::{RenderJob, Renderer, SamplerKind};
 use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa};

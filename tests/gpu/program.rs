@@ -1,6 +1,6 @@
 //! The program with a GPU, as users run it: the device is lost, or CPU and GPU share a film.
 
-use super::program_common::{ends, film, json_file};
+use crate::common::program::{ends, film, json_file};
 use tempfile::TempDir;
 use weekender::render_gpu::GpuOptions;
 
@@ -8,7 +8,7 @@ const PICTURE: [&str; 5] = ["--batch", "--size", "64x36", "--progress", "off"];
 
 /// Runs the program on the tests' adapter, and returns its messages; `None` without one.
 fn run(directory: &TempDir, arguments: &[&str]) -> Option<String> {
-    let gpu = super::gpu_common::gpu(GpuOptions::default())?;
+    let gpu = crate::common::gpu::gpu(GpuOptions::default())?;
     let adapter = ["--adapter", &gpu.adapter().name];
     Some(ends(directory.path(), 0, &[&PICTURE, &adapter[..], arguments].concat()).1)
 }
@@ -39,7 +39,7 @@ fn fault_completes_picture_with_warning() {
             });
             let Some(message) = broken else {
                 assert!(
-                    super::gpu_common::gpu(GpuOptions::default()).is_none(),
+                    crate::common::gpu::gpu(GpuOptions::default()).is_none(),
                     "{device} {flag}: no warning"
                 );
                 return;

@@ -1,7 +1,7 @@
 //! The whole GPU renderer: known radiance, odd sizes, films continued by another backend, failures.
 
-use super::gpu_common::program::{Program, Programs};
-use super::gpu_common::{cpu, go_on, gpu, job_of, parted, picture_mean, rendered};
+use crate::common::gpu::program::{Program, Programs};
+use crate::common::gpu::{cpu, go_on, gpu, job_of, parted, picture_mean, rendered};
 use glam::DVec3;
 use std::sync::atomic::AtomicBool;
 use weekender::film::Film;
@@ -220,7 +220,7 @@ fn new_film_gets_no_old_samples() {
     let other = three_spheres([64, 36], 3, false);
     let film = rendered(&mut gpu, &other, 4);
     assert!(film != expected);
-    let mut fresh = super::gpu_common::gpu(GpuOptions::default()).unwrap();
+    let mut fresh = crate::common::gpu::gpu(GpuOptions::default()).unwrap();
     assert!(film == rendered(&mut fresh, &other, 4));
 }
 

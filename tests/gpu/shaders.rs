@@ -1,6 +1,6 @@
 //! The shaders' text: valid for naga (and for tint, if installed), with the host's memory layout.
 
-use super::gpu_common::skip;
+use crate::common::gpu::skip;
 use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use weekender::job::render::SamplerKind;

@@ -1,6 +1,6 @@
 //! Checks of pages. html-validate is from npm: `npm ci --prefix tests/companion` installs it.
 
-use crate::gpu_common;
+use crate::common::gpu;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
@@ -74,5 +74,5 @@ fn assert_valid(page: &Path) {
 }
 
 fn skip(reason: &str) {
-    gpu_common::skip("BROWSER", reason);
+    gpu::skip("BROWSER", reason);
 }

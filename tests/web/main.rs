@@ -3,11 +3,11 @@
 
 mod browser;
 mod bytes;
-#[path = "../gpu_common/mod.rs"]
-mod gpu_common;
+#[path = "../common/mod.rs"]
+mod common;
 mod page;
 mod session;
 
 fn skip(reason: &str) {
-    gpu_common::skip("BROWSER", reason);
+    crate::common::gpu::skip("BROWSER", reason);
 }

@@ -1,6 +1,6 @@
 //! Bookmarks as an animation: played, saved, stopped and continued.
 
-use crate::common::{control, has_samples, open, send, until};
+use crate::harness::{control, has_samples, open, send, until};
 use crate::questions::Ask as _;
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::Harness;

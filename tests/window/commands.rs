@@ -1,6 +1,6 @@
 //! Every command, by table, key and menu, and how many there are.
 
-use crate::common::{SMALL, control, open, open_sized, send};
+use crate::harness::{SMALL, control, open, open_sized, send};
 use crate::questions::Ask as _;
 use eframe::egui::{Key, Role};
 use egui_kittest::Harness;

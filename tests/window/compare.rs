@@ -1,7 +1,7 @@
 //! One picture, traced by two devices.
 
-use crate::common::{control, has_samples, open_sized, send, until, window_of_new_user};
-use crate::gpu_common::has_adapter;
+use crate::common::gpu::has_adapter;
+use crate::harness::{control, has_samples, open_sized, send, until, window_of_new_user};
 use crate::questions::Ask as _;
 use eframe::egui::{Key, OutputCommand};
 use egui_kittest::Harness;

@@ -1,6 +1,6 @@
 //! Choosing the device, and pausing.
 
-use crate::common::{has_samples, open, send, until};
+use crate::harness::{has_samples, open, send, until};
 use crate::questions::Ask as _;
 use eframe::egui::Key;
 use std::time::Duration;

@@ -1,6 +1,6 @@
 //! Extreme scenes, and the switch to the book's arithmetic.
 
-use crate::common::{has_samples, open, send, until};
+use crate::harness::{has_samples, open, send, until};
 use crate::questions::Ask as _;
 use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Partner};

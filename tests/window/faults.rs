@@ -1,6 +1,6 @@
 //! Faults in the tracer while the window shows its picture.
 
-use crate::common::{has_samples, open, save, until};
+use crate::harness::{has_samples, open, save, until};
 use crate::questions::Ask as _;
 use weekender::app::Command;
 use weekender::film::{Film, checkpoint};

@@ -1,6 +1,6 @@
 //! Saving, opening, dropping, and the companion.
 
-use crate::common::{SMALL, control, has_samples, name_file, open, save, send, until};
+use crate::harness::{SMALL, control, has_samples, name_file, open, save, send, until};
 use crate::questions::Ask as _;
 use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;

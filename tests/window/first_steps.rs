@@ -1,6 +1,6 @@
 //! The card that a new user sees.
 
-use crate::common::{open, opened, window};
+use crate::harness::{open, opened, window};
 use crate::questions::Ask as _;
 use eframe::egui::Key;
 use egui_kittest::Harness;

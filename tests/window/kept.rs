@@ -1,6 +1,6 @@
 //! Pictures that are kept.
 
-use crate::common::{
+use crate::harness::{
     SMALL, control, drag_from, has_samples, middle, name_file, open, save, scroll, send, until,
 };
 use crate::questions::Ask as _;

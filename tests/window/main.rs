@@ -3,6 +3,7 @@
 
 mod animation;
 mod commands;
+#[path = "../common/mod.rs"]
 mod common;
 mod compare;
 mod device;
@@ -11,8 +12,7 @@ mod extreme;
 mod faults;
 mod files;
 mod first_steps;
-#[path = "../gpu_common/mod.rs"]
-mod gpu_common;
+mod harness;
 mod kept;
 mod moving;
 mod objects;

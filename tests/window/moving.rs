@@ -1,6 +1,6 @@
 //! Moving about: orbits and the wheel at what is under the pointer, and the axes in the corner.
 
-use crate::common::{control, drag_from, has_samples, hold, open, scroll, send, until};
+use crate::harness::{control, drag_from, has_samples, hold, open, scroll, send, until};
 use crate::objects::on_screen;
 use crate::questions::Ask as _;
 use eframe::egui::{self, Pos2, Shape, vec2};

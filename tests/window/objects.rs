@@ -1,6 +1,6 @@
 //! The spheres of the scene: selecting and dragging them.
 
-use crate::common::{drag_from, has_samples, open, send, until};
+use crate::harness::{drag_from, has_samples, open, send, until};
 use crate::questions::Ask as _;
 use eframe::egui::{self, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;

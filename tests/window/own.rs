@@ -1,6 +1,6 @@
 //! One's own world: a new scene, the list of spheres, and spheres as text.
 
-use crate::common::{control, has_samples, open, open_sized, send, until};
+use crate::harness::{control, has_samples, open, open_sized, send, until};
 use crate::objects::{metal_sphere, opened, select, spheres};
 use crate::questions::Ask as _;
 use eframe::egui::{self, Key, Modifiers};

@@ -1,6 +1,6 @@
 //! The palette: an empty box does nothing, and what is found is carried out.
 
-use crate::common::{SMALL, control, open};
+use crate::harness::{SMALL, control, open};
 use crate::questions::Ask as _;
 use eframe::egui::{Event, Key, Modifiers};
 use egui_kittest::Harness;

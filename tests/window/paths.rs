@@ -1,6 +1,6 @@
 //! The paths of a pixel, and the way through them.
 
-use crate::common::{SMALL, control, has_samples, middle, open, send, until};
+use crate::harness::{SMALL, control, has_samples, middle, open, send, until};
 use crate::questions::Ask as _;
 use eframe::egui::{self, Key};
 use egui_kittest::Harness;

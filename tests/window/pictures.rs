@@ -1,6 +1,6 @@
 //! The pictures of the window in the docs. `cargo test --release --test window pictures -- --ignored` takes them anew.
 
-use crate::common::{has_samples, until, window};
+use crate::harness::{has_samples, until, window};
 use crate::questions::Ask as _;
 use eframe::egui::{self, Key, vec2};
 use egui_kittest::Harness;

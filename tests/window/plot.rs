@@ -1,6 +1,6 @@
 //! The error over time.
 
-use super::common::{control, open, send, until};
+use super::harness::{control, open, send, until};
 use crate::questions::Ask as _;
 use eframe::egui::OutputCommand;
 use weekender::app::Command;

@@ -1,6 +1,6 @@
 //! A presentation.
 
-use crate::common::{has_samples, open_sized, send, until};
+use crate::harness::{has_samples, open_sized, send, until};
 use crate::questions::Ask as _;
 use eframe::egui::Key;
 use egui_kittest::Harness;

@@ -1,6 +1,6 @@
 //! While something moves, coarse previews are shown; afterwards the picture gets finer.
 
-use crate::common::{has_samples, hold, open, until};
+use crate::harness::{has_samples, hold, open, until};
 use crate::questions::Ask as _;
 use std::time::{Duration, Instant};
 

@@ -1,7 +1,7 @@
 //! The numbers are those of the pixel under the pointer, whatever is drawn there.
 
-use crate::common::{has_samples, name_file, open, send, until, window};
-use crate::gpu_common::has_adapter;
+use crate::common::gpu::has_adapter;
+use crate::harness::{has_samples, name_file, open, send, until, window};
 use crate::questions::Ask as _;
 use eframe::egui::{self, Pos2, vec2};
 use egui_kittest::Harness;

@@ -1,6 +1,6 @@
 //! The files that were opened last, and the picture on the clipboard.
 
-use crate::common::{SMALL, control, copied, has_samples, open, send, until};
+use crate::harness::{SMALL, control, copied, has_samples, open, send, until};
 use crate::questions::Ask as _;
 use egui_kittest::kittest::Queryable;
 use std::path::Path;

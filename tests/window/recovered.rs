@@ -1,6 +1,6 @@
 //! State that the next window takes over: settings, and the autosaved film.
 
-use crate::common::{has_samples, opened, send, until};
+use crate::harness::{has_samples, opened, send, until};
 use crate::questions::Ask as _;
 use crate::right::{drop_file, gradient, until_compared};
 use eframe::{App, Storage};

@@ -1,6 +1,6 @@
 //! Films that the window resumes.
 
-use crate::common::{has_samples, open, save, send, until};
+use crate::harness::{has_samples, open, save, send, until};
 use crate::questions::Ask as _;
 use crate::recovered::held;
 use crate::right::Dropped;

@@ -1,6 +1,6 @@
 //! The right panel: its tabs, the code of a stage, and the check of a picture.
 
-use crate::common::{SMALL, control, has_samples, open, open_sized, send, until, until_seen};
+use crate::harness::{SMALL, control, has_samples, open, open_sized, send, until, until_seen};
 use crate::questions::Ask as _;
 use eframe::egui;
 use egui_kittest::Harness;

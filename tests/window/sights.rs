@@ -1,6 +1,6 @@
 //! "Show me": each stage's thing to look for.
 
-use crate::common::{control, has_samples, open, open_sized, send, until};
+use crate::harness::{control, has_samples, open, open_sized, send, until};
 use crate::questions::Ask as _;
 use eframe::egui::{Key, Rect, pos2};
 use egui_kittest::Harness;

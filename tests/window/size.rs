@@ -1,6 +1,6 @@
 //! The size of the picture: that of the viewport, the book's, or its own.
 
-use crate::common::{has_samples, send, until, window_of_new_user};
+use crate::harness::{has_samples, send, until, window_of_new_user};
 use crate::questions::Ask as _;
 use eframe::egui::{self, Key};
 use egui_kittest::Harness;

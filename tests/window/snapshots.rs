@@ -1,7 +1,7 @@
 //! Snapshots of the whole window. `UPDATE_SNAPSHOTS=1` takes them anew; look at them before you commit them.
 
-use crate::common::{has_samples, middle, send, until, window};
-use crate::gpu_common::has_adapter;
+use crate::common::gpu::has_adapter;
+use crate::harness::{has_samples, middle, send, until, window};
 use crate::objects::{click, middle_sphere, on_screen, spheres};
 use crate::questions::Ask as _;
 use eframe::egui::{self, Key, Modifiers};

@@ -1,6 +1,6 @@
 //! The walk through the book.
 
-use crate::common::{open, send};
+use crate::harness::{open, send};
 use crate::questions::Ask as _;
 use eframe::egui::Key;
 use weekender::app::Command;

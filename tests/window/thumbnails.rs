@@ -1,6 +1,6 @@
 //! The list of stages with small pictures.
 
-use crate::common::open_sized;
+use crate::harness::open_sized;
 use crate::questions::Ask as _;
 use eframe::egui::{Event, Key};
 use egui_kittest::Harness;

@@ -1,6 +1,6 @@
 //! Exposure, luminance in false colours, and the histogram.
 
-use crate::common::{SMALL, control, open, save, send, until, until_seen};
+use crate::harness::{SMALL, control, open, save, send, until, until_seen};
 use crate::questions::Ask as _;
 use eframe::egui::vec2;
 use egui_kittest::Harness;

@@ -1,6 +1,6 @@
 //! The mouse on the picture, and what the picture shows.
 
-use crate::common::{SMALL, choose_from_menu, drag, has_samples, open, send, until, until_drawn};
+use crate::harness::{SMALL, choose_from_menu, drag, has_samples, open, send, until, until_drawn};
 use crate::objects::{on_screen, spheres};
 use crate::questions::Ask as _;
 use eframe::egui::{self, Key, Modifiers, PointerButton, vec2};

@@ -1,7 +1,7 @@
 //! Two pictures on the two sides of a divider, and their difference.
 
-use crate::common::{drag_from, has_samples, open, send, until, window};
-use crate::gpu_common::has_adapter;
+use crate::common::gpu::has_adapter;
+use crate::harness::{drag_from, has_samples, open, send, until, window};
 use crate::questions::Ask as _;
 use eframe::egui::{Pos2, vec2};
 use egui_kittest::Harness;

@@ -1,0 +1,7 @@
+//! Progressive rendering with a renderer that fails on request: no samples are lost, whatever happens.
+
+mod common;
+mod failures;
+mod handover;
+mod stopping;
+mod together;

@@ -1,0 +1,480 @@
+//! A real window on its own X display, used with mouse and keyboard as a person would.
+#![cfg(target_os = "linux")]
+
+use crate::common::skip::{report_untested, skip};
+use rustix::process::{Pid, Signal};
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+use weekender::app::Device;
+use weekender::cli::{self, Request, WindowOptions};
+use weekender::film::checkpoint;
+use weekender::job::output::read_description;
+
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Whether these programs are available. If not, prints so, and fails if they are required.
+fn are_there(programs: &[&str], consequence: &str) -> bool {
+    let is_missing = |program: &&&str| Command::new(program).arg("-version").output().is_err();
+    let missing: Vec<&str> = programs.iter().filter(is_missing).copied().collect();
+    if missing.is_empty() {
+        return true;
+    }
+    skip("GPU", &format!("{consequence}: missing: {}", missing.join(", ")));
+    false
+}
+
+/// An X display that ends when it is dropped.
+struct Display {
+    server: Child,
+    name: String,
+}
+
+impl Drop for Display {
+    fn drop(&mut self) {
+        let _ = self.server.kill();
+        let _ = self.server.wait();
+    }
+}
+
+impl Display {
+    /// `None`, with a message, if programs for it are missing and not required.
+    fn start() -> Option<Display> {
+        Display::with(&[])
+    }
+
+    /// A display whose server has these arguments, too.
+    fn with(arguments: &[&str]) -> Option<Display> {
+        if !are_there(&["Xvfb", "xdotool"], "no window was tried") {
+            return None;
+        }
+        let mut server = Command::new("Xvfb")
+            .args(["-displayfd", "1", "-screen", "0", "1280x800x24", "-nolisten", "tcp", "-noreset"])
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        BufReader::new(server.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        Some(Display { server, name: format!(":{}", line.trim()) })
+    }
+
+    fn weekender(&self, home: &Path) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
+        command.env("DISPLAY", &self.name).env_remove("WAYLAND_DISPLAY");
+        command.env("HOME", home).env("XDG_DATA_HOME", home.join("data")).current_dir(home);
+        command.env("XDG_STATE_HOME", home.join("state"));
+        command
+    }
+
+    fn xdotool(&self, arguments: &[&str]) -> Output {
+        let output = Command::new("xdotool").env("DISPLAY", &self.name).args(arguments).output().unwrap();
+        std::thread::sleep(Duration::from_millis(150));
+        output
+    }
+
+    fn key(&self, keys: &str) {
+        assert!(self.xdotool(&["key", keys]).status.success(), "{keys}");
+    }
+
+    fn type_text(&self, text: &str) {
+        assert!(self.xdotool(&["type", "--delay", "4", text]).status.success(), "{text}");
+    }
+
+    /// The text on the clipboard, once there is some.
+    fn clipboard(&self) -> String {
+        let begin = Instant::now();
+        loop {
+            let mut command = Command::new("xclip");
+            command.env("DISPLAY", &self.name).args(["-o", "-selection", "clipboard"]);
+            let text = String::from_utf8(command.output().unwrap().stdout).unwrap();
+            if !text.is_empty() {
+                return text;
+            }
+            assert!(begin.elapsed() < PATIENCE, "nothing came to the clipboard");
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    }
+
+    fn wait_for_window(&self, child: &mut Child) -> String {
+        let begin = Instant::now();
+        loop {
+            let found = self.xdotool(&["search", "--onlyvisible", "--name", "Weekender"]);
+            let text = String::from_utf8_lossy(&found.stdout).into_owned();
+            if let Some(id) = text.lines().last() {
+                return id.to_owned();
+            }
+            if let Some(status) = child.try_wait().unwrap() {
+                panic!("it ended before there was a window: {status}");
+            }
+            assert!(begin.elapsed() < PATIENCE, "no window came");
+            std::thread::sleep(Duration::from_millis(100));
+        }
+    }
+}
+
+fn wait_for_end(child: &mut Child) -> std::process::ExitStatus {
+    let begin = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait().unwrap() {
+            return status;
+        }
+        if begin.elapsed() > PATIENCE {
+            let _ = child.kill();
+            panic!("it did not end");
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
+}
+
+fn wait_for_file(path: &Path) {
+    wait_for(&path.display().to_string(), || path.exists());
+}
+
+fn pixels(path: &Path) -> (u32, u32, Vec<u8>) {
+    let picture = image::open(path).unwrap().to_rgb8();
+    (picture.width(), picture.height(), picture.into_raw())
+}
+
+/// The log of the window: the lines of `--frame-log`.
+struct Log(PathBuf);
+
+impl Log {
+    /// The fields of all complete lines of a kind, without kind and time.
+    fn lines(&self, kind: &str) -> Vec<Vec<String>> {
+        let text = std::fs::read_to_string(&self.0).unwrap_or_default();
+        let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+        let fields = |line: &str| line.split(',').map(str::to_owned).collect::<Vec<_>>();
+        whole.lines().map(fields).filter(|line| line[0] == kind).map(|line| line[2..].to_vec()).collect()
+    }
+
+    /// The renders and the backends that traced them, in order.
+    fn tracings(&self) -> Vec<(u64, String)> {
+        self.lines("tracing").iter().map(|line| (line[0].parse().unwrap(), line[1].clone())).collect()
+    }
+
+    fn wait_for(&self, what: &str, is_so: impl Fn(&Log) -> bool) {
+        let begin = Instant::now();
+        while !is_so(self) {
+            let (commands, tracings) = (self.lines("command"), self.tracings());
+            assert!(begin.elapsed() < PATIENCE, "never: {what}; {commands:?}; {tracings:?}");
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    }
+
+    fn wait_for_command(&self, name: &str, times: usize) {
+        let count = |log: &Log| log.lines("command").iter().filter(|line| line[0] == name).count();
+        self.wait_for(name, |log| count(log) >= times);
+    }
+
+    fn wait_for_backend(&self, name: &str, after: usize) -> (u64, String) {
+        let found = |log: &Log| log.tracings().into_iter().skip(after).find(|(_, backend)| backend == name);
+        self.wait_for(name, |log| found(log).is_some());
+        found(self).unwrap()
+    }
+}
+
+/// Saves a picture with the keyboard.
+fn save(display: &Display, path: &Path) {
+    display.key("ctrl+s");
+    std::thread::sleep(Duration::from_millis(500));
+    display.key("ctrl+a");
+    display.type_text(path.to_str().unwrap());
+    display.key("Return");
+    wait_for_file(path);
+}
+
+#[test]
+fn a_person_can_use_the_window() {
+    let Some(display) = Display::start() else { return };
+    let home = tempfile::tempdir().unwrap();
+    let log = Log(home.path().join("frames.csv"));
+    let mut child = display
+        .weekender(home.path())
+        .args(["--stage", "glass-refract", "--size", "240x135", "--samples", "4000000000", "--device", "cpu"])
+        .arg("--frame-log")
+        .arg(&log.0)
+        .spawn()
+        .unwrap();
+    let id = display.wait_for_window(&mut child);
+    let (run, _) = log.wait_for_backend("cpu", 0);
+    display.xdotool(&["windowfocus", "--sync", &id]);
+
+    // Switch the device and back: both trace into the same film.
+    display.key("g");
+    log.wait_for_command("Switch CPU and GPU", 1);
+    match Device::Gpu.unavailable() {
+        Some(reason) => report_untested(&format!("the device was not switched: {reason}")),
+        None => {
+            assert_eq!(log.wait_for_backend("gpu", 1), (run, "gpu".to_owned()));
+            let by_gpu = home.path().join("gpu.png");
+            save(&display, &by_gpu);
+            let description = read_description(&by_gpu).unwrap();
+            assert!(
+                description.get("Backend").unwrap().starts_with("gpu"),
+                "{:?}",
+                description.get("Backend")
+            );
+            display.key("g");
+            assert_eq!(log.wait_for_backend("cpu", 2), (run, "cpu".to_owned()));
+        }
+    }
+
+    // Change the stage, drag, and wait for the resulting picture.
+    display.key("Next");
+    display.key("Next");
+    log.wait_for_command("Next stage", 2);
+    log.wait_for("another stage", |log| log.tracings().last().is_some_and(|(last, _)| *last > run));
+    let (before, _) = log.tracings().last().cloned().unwrap();
+    display.xdotool(&["mousemove", "620", "420"]);
+    display.xdotool(&["mousedown", "1"]);
+    for _ in 0..8 {
+        display.xdotool(&["mousemove_relative", "--", "6", "-3"]);
+    }
+    display.xdotool(&["mouseup", "1"]);
+    log.wait_for("the moved picture", |log| log.tracings().last().is_some_and(|(last, _)| *last > before));
+    std::thread::sleep(Duration::from_secs(1));
+
+    // During a pause, saving and copying use the same film.
+    display.key("space");
+    log.wait_for_command("Pause or resume", 1);
+    std::thread::sleep(Duration::from_millis(500));
+    let saved = home.path().join("saved.png");
+    save(&display, &saved);
+    display.key("ctrl+shift+c");
+    log.wait_for_command("Copy as command", 1);
+    let line = are_there(&["xclip"], "the copied command was not tried").then(|| display.clipboard());
+    display.key("ctrl+q");
+    let status = wait_for_end(&mut child);
+    assert_eq!(status.code(), Some(0), "{status}");
+
+    // Rendering the saved recipe without a window gives the same picture.
+    let description = read_description(&saved).unwrap();
+    assert_eq!(description.get("Stage"), Some("glass-schlick"), "two stages on");
+    let scene = home.path().join("scene.toml");
+    std::fs::write(&scene, description.recipe()).unwrap();
+    assert!(!description.recipe().contains("look_from = [0.0, 0.0, 0.0]"), "the drag moved nothing");
+    let again = home.path().join("again.png");
+    let samples = description.get("Samples").unwrap();
+    let batch = display
+        .weekender(home.path())
+        .args(["--batch", "--device", "cpu", "--samples", samples])
+        .arg("--scene")
+        .arg(&scene)
+        .arg("--out")
+        .arg(&again)
+        .output()
+        .unwrap();
+    assert!(batch.status.success(), "{}", String::from_utf8_lossy(&batch.stderr));
+    assert!(description.get("Backend").unwrap().starts_with("cpu"), "{:?}", description.get("Backend"));
+    assert!(pixels(&saved) == pixels(&again), "the saved picture differs from the batch's");
+
+    // So does the command line from the clipboard.
+    let Some(line) = line else { return };
+    let words = line.strip_prefix("weekender ").unwrap();
+    let copied = Command::new("sh")
+        .args(["-c", &format!("\"$WEEKENDER\" {words}")])
+        .env("WEEKENDER", env!("CARGO_BIN_EXE_weekender"))
+        .current_dir(home.path())
+        .output()
+        .unwrap();
+    assert!(copied.status.success(), "{line}: {}", String::from_utf8_lossy(&copied.stderr));
+    let rendered = home.path().join("glass-schlick.png");
+    assert!(pixels(&saved) == pixels(&rendered), "the saved picture differs from that of {line}");
+}
+
+#[test]
+fn a_panic_of_the_window_keeps_its_film_and_leaves_a_report() {
+    let Some(display) = Display::start() else { return };
+    let home = tempfile::tempdir().unwrap();
+    let output = display
+        .weekender(home.path())
+        .env("TMPDIR", home.path())
+        .args(["--stage", "glass-refract", "--size", "240x135", "--samples", "4000000000", "--device", "cpu"])
+        .args(["--simulate-crash", "16"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    let one = |directory: &Path, ending: &str| match files(directory, ending).as_slice() {
+        [one] => one.clone(),
+        all => panic!("{ending}: {all:?}: {said}"),
+    };
+    // Where the next window looks for it.
+    let film = autosave(home.path());
+    assert!(checkpoint::load(&film).unwrap().film.sample_count() >= 16);
+    assert!(said.contains(&format!("continue with --resume {}", film.display())), "{said}");
+    let report = std::fs::read_to_string(one(home.path(), "txt")).unwrap();
+    assert!(report.contains("injected fault") && report.contains("--stage glass-refract"), "{report}");
+}
+
+/// Where a window autosaves its film.
+fn autosave(home: &Path) -> PathBuf {
+    home.join("state/weekender/autosave.exr")
+}
+
+/// The files with this ending in a directory, if it exists.
+fn files(directory: &Path, ending: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(directory).into_iter().flatten().map(|entry| entry.unwrap().path());
+    entries.filter(|path| path.extension().is_some_and(|own| own == ending)).collect()
+}
+
+fn wait_for(what: &str, is_so: impl Fn() -> bool) {
+    let begin = Instant::now();
+    while !is_so() {
+        assert!(begin.elapsed() < PATIENCE, "never: {what}");
+        std::thread::sleep(Duration::from_millis(50));
+    }
+}
+
+#[test]
+fn a_killed_window_loses_little_and_a_terminated_one_nothing() {
+    let Some(display) = Display::start() else { return };
+    let home = tempfile::tempdir().unwrap();
+    let film = autosave(home.path());
+    let samples_in = |path: &Path| checkpoint::load(path).unwrap().film.sample_count();
+    let stage = ["--stage", "glass-refract", "--size", "240x135", "--samples", "4000000000"];
+    let often = ["--device", "cpu", "--autosave-every", "0.5s"];
+    let mut first = display.weekender(home.path()).args(stage).args(often).spawn().unwrap();
+    wait_for_file(&film);
+    first.kill().unwrap();
+    first.wait().unwrap();
+    let samples = samples_in(&film);
+
+    // A window with another picture keeps it until the user has answered.
+    let other = ["--stage", "metal", "--size", "32x18"];
+    let mut second = display.weekender(home.path()).args(other).args(often).spawn().unwrap();
+    display.wait_for_window(&mut second);
+    let left = film.with_file_name("recovered-1.exr");
+    wait_for_file(&left);
+    std::thread::sleep(Duration::from_secs(2));
+    assert_eq!(samples_in(&left), samples);
+    second.kill().unwrap();
+    second.wait().unwrap();
+
+    // A window that is terminated saves its film, and the next one continues it.
+    let resume = home.path().join("resumed.exr");
+    std::fs::copy(&left, &resume).unwrap();
+    let goes_on = ["--resume", resume.to_str().unwrap(), "--samples", "4000000000"];
+    let mut before = samples;
+    for flags in [&goes_on[..], &[]] {
+        let mut next = display.weekender(home.path()).args(flags).args(often).spawn().unwrap();
+        display.wait_for_window(&mut next);
+        std::thread::sleep(Duration::from_secs(4));
+        rustix::process::kill_process(Pid::from_child(&next), Signal::TERM).unwrap();
+        assert_eq!(wait_for_end(&mut next).code(), Some(143));
+        let after = samples_in(&film);
+        assert!(after > before, "{after} after {before}");
+        before = after;
+    }
+    let film = checkpoint::load(&film).unwrap().film;
+
+    // It has the bits of an uninterrupted render.
+    let count = film.sample_count().to_string();
+    let whole = home.path().join("whole.exr");
+    let batch =
+        [&stage[..4], &["--batch", "--device", "cpu", "--samples", &count, "--out", "whole.exr"]].concat();
+    let output = display.weekender(home.path()).args(batch).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(film == checkpoint::load(&whole).unwrap().film);
+}
+
+/// Number of spheres in the picture of a window that continues from this state directory.
+fn spheres_after(state: &Path) -> usize {
+    let copy = tempfile::tempdir().unwrap();
+    for entry in std::fs::read_dir(state).unwrap() {
+        let path = entry.unwrap().path();
+        std::fs::copy(&path, copy.path().join(path.file_name().unwrap())).unwrap();
+    }
+    let Request::Window(options) = cli::parse(["weekender".into()]).unwrap() else { panic!("no window") };
+    let state_directory = Some(copy.path().to_owned());
+    let window = weekender::app::Window::new(WindowOptions { state_directory, ..*options }).unwrap();
+    window.model.document.scene().spheres.len()
+}
+
+/// At ten moments of editing, rendering and saving.
+#[test]
+fn a_killed_window_comes_back_with_what_was_edited() {
+    let Some(display) = Display::start() else { return };
+    let home = tempfile::tempdir().unwrap();
+    let state = home.path().join("state/weekender");
+    let film = autosave(home.path());
+    let mut before = None;
+    for round in 0..10_u64 {
+        let log = Log(home.path().join(format!("frames {round}.csv")));
+        let mut command = display.weekender(home.path());
+        command.args(["--device", "cpu", "--autosave-every", "0.2s", "--frame-log"]).arg(&log.0);
+        if before.is_none() {
+            command.args(["--stage", "metal", "--size", "240x135"]);
+        }
+        let mut child = command.spawn().unwrap();
+        let id = display.wait_for_window(&mut child);
+        log.wait_for_backend("cpu", 0);
+        let _ = display.xdotool(&["windowfocus", "--sync", &id]);
+        let presses = 1 + round % 3;
+        (0..presses).for_each(|_| display.key("Insert"));
+        // Milliseconds that look random.
+        std::thread::sleep(Duration::from_millis(round * 7919 % 443));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let added = log.lines("command").iter().filter(|line| line[0] == "Add a sphere").count();
+        let found = spheres_after(&state);
+        // The last one may have been added and not yet saved.
+        let expected = before.unwrap_or(5) + added;
+        assert!(found == expected || found + 1 == expected, "round {round}: {found}, not {expected}");
+        assert!(!film.exists() || checkpoint::load(&film).is_ok(), "round {round}");
+        before = Some(found);
+    }
+    assert!(before.unwrap() > 10, "{before:?}");
+}
+
+#[test]
+fn without_a_display_the_message_names_the_way_out() {
+    let home = tempfile::tempdir().unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_weekender"))
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .env("HOME", home.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(told.contains("no display") && told.contains("--batch"), "{told}");
+
+    let output = Command::new(env!("CARGO_BIN_EXE_weekender"))
+        .env("DISPLAY", ":4711")
+        .env_remove("WAYLAND_DISPLAY")
+        .env("HOME", home.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2), "a display that does not answer");
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    // A system without a display may lack its libraries, too.
+    let is_named = told.contains(":4711 does not answer") || told.contains("a window needs lib");
+    assert!(is_named && told.contains("--batch"), "{told}");
+}
+
+/// As with `ssh -X`, and with a factor that no window fits.
+#[test]
+fn unusable_display_is_refused_with_a_message() {
+    let home = tempfile::tempdir().unwrap();
+    let Some(display) = Display::with(&["-extension", "RANDR"]) else { return };
+    let refused = |command: &mut Command| {
+        let output = command.output().unwrap();
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        assert!(told.contains("--batch") || told.contains("set it to"), "{told}");
+        assert!(!told.contains("report it") && told.lines().count() == 1, "{told}");
+        told
+    };
+    let told = refused(display.weekender(home.path()).arg("--fresh"));
+    assert!(told.contains(&display.name), "{told}");
+    for factor in ["100", "0", "1e-9", "nan"] {
+        let told =
+            refused(display.weekender(home.path()).arg("--fresh").env("WINIT_X11_SCALE_FACTOR", factor));
+        assert!(told.contains("WINIT_X11_SCALE_FACTOR"), "{told}");
+    }
+}

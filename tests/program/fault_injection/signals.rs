@@ -1,0 +1,202 @@
+//! Kills and other signals.
+
+use super::common::{
+    ENDLESS, PICTURE, PROGRAM, batch, film, names, rounds, signal, succeeds, text, until, wait, weekender,
+};
+use crate::common::program::{PATIENCE, restore_signals};
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// Pseudo-random numbers, from a seed that is printed.
+pub struct Dice(u64);
+
+impl Dice {
+    pub fn new() -> Dice {
+        let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap();
+        println!("dice {now:?}");
+        Dice(now.as_nanos() as u64 | 1)
+    }
+
+    /// A number below `limit`.
+    pub fn roll(&mut self, limit: u64) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0 % limit
+    }
+}
+
+/// Checks that `part`, left by a killed run, can be continued to the film of an uninterrupted run.
+fn continues_to_the_same_bits(at: &Path, part: &str) {
+    let whole = film(&at.join(part));
+    let samples = whole.samples().end() + 3;
+    let range = format!("0..{samples}");
+    let common = ["--sample-range", &range, "--out"];
+    succeeds(&mut batch(at, "off", &[&["--resume", part], &common[..], &["resumed.exr"]].concat()));
+    succeeds(&mut batch(at, "off", &[&common[..], &["whole.exr"]].concat()));
+    assert!(film(&at.join("resumed.exr")) == film(&at.join("whole.exr")), "{part}: {}", whole.samples());
+}
+
+#[test]
+fn signals_at_any_moment_leave_a_resumable_film() {
+    let mut dice = Dice::new();
+    let mut films = 0;
+    for round in 0..rounds(6) {
+        let at = TempDir::new().unwrap();
+        let at = at.path();
+        let name = ["KILL", "INT", "TERM"][round as usize % 3];
+        let mut child = batch(at, "on", &ENDLESS).spawn().unwrap();
+        // It prints its first line once it handles signals.
+        let mut stderr = BufReader::new(child.stderr.take().unwrap());
+        stderr.read_line(&mut String::new()).unwrap();
+        sleep(Duration::from_millis(dice.roll(400)));
+        signal(&child, name);
+        drop(stderr);
+        let status = wait(&mut child);
+        if name == "KILL" {
+            assert_eq!(status.signal(), Some(9));
+        } else {
+            assert_eq!(status.code(), Some(if name == "TERM" { 143 } else { 130 }), "{name}: {status}");
+            // Before the first sample, there is nothing to save.
+            assert!(names(at).is_empty() || names(at) == ["g.exr", "g.png"], "{name}: {:?}", names(at));
+        }
+        if at.join("g.exr").exists() {
+            films += 1;
+            continues_to_the_same_bits(at, "g.exr");
+            assert!(names(at).iter().all(|name| !name.ends_with(".part")), "the next run clears up");
+        }
+    }
+    assert!(films > 0);
+}
+
+#[test]
+fn signals_wait_for_file_writes_and_are_answered() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    // A pipe accepts a picture as slowly as its reader wants.
+    succeeds(Command::new("mkfifo").arg(at.join("slow.png")).arg(at.join("pipe.exr")));
+    let flags = ["--samples", "1", "--checkpoint", "g.exr", "--out", "slow.png"];
+    let mut child = batch(at, "on", &flags).spawn().unwrap();
+    let stderr = BufReader::new(child.stderr.take().unwrap());
+    let (sender, lines) = std::sync::mpsc::channel();
+    let listener = std::thread::spawn(move || {
+        for line in stderr.lines().map_while(Result::ok) {
+            sender.send(line).unwrap();
+        }
+    });
+    let hear = |part: &str| while !lines.recv_timeout(PATIENCE).unwrap().contains(part) {};
+    let film_in_pipe =
+        batch(at, "off", &["--samples", "4294967296", "--out", "a.png", "--checkpoint", "pipe.exr"])
+            .output()
+            .unwrap();
+    assert_eq!(film_in_pipe.status.code(), Some(2), "{film_in_pipe:?}");
+    assert!(text(&film_in_pipe.stderr).contains("pipe.exr"), "{film_in_pipe:?}");
+    hear("writing slow.png");
+    for _ in 0..3 {
+        signal(&child, "INT");
+        hear("still writing");
+        // Longer than the time within which two signals count as one.
+        sleep(Duration::from_millis(600));
+    }
+    assert_eq!(child.try_wait().unwrap(), None);
+    let mut picture = Vec::new();
+    File::open(at.join("slow.png")).unwrap().read_to_end(&mut picture).unwrap();
+    assert_eq!(wait(&mut child).code(), Some(130));
+    listener.join().unwrap();
+    assert!(picture.starts_with(b"\x89PNG") && picture.ends_with(b"IEND\xae\x42\x60\x82"));
+    assert_eq!(film(&at.join("g.exr")).sample_count(), 1);
+}
+
+#[test]
+fn repeated_signal_counts_once() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let mut child = batch(at, "off", &ENDLESS).spawn().unwrap();
+    until("the film is not written", || at.join("g.exr").exists());
+    let both = format!("kill -s INT {0} && kill -s TERM {0}", child.id());
+    succeeds(Command::new("sh").args(["-c", &both]));
+    assert_eq!(wait(&mut child).code(), Some(130));
+    assert_eq!(names(at), ["g.exr", "g.png"]);
+}
+
+#[test]
+fn stopped_time_does_not_count() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let limit =
+        ["--time-limit", "3", "--checkpoint", "g.exr", "--every", "0.1s", "--out", "g.png", "--json", "-"];
+    let begin = Instant::now();
+    let child = batch(at, "off", &limit).spawn().unwrap();
+    until("the film is not written", || at.join("g.exr").exists());
+    signal(&child, "STOP");
+    sleep(Duration::from_secs(5));
+    signal(&child, "CONT");
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success());
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let (all, traced) = (begin.elapsed().as_secs_f64(), json["trace_seconds"].as_f64().unwrap());
+    // A second of the five may count.
+    assert!(all > traced + 4.0, "{traced} of {all}");
+}
+
+#[test]
+fn a_second_signal_ends_the_program_at_once() {
+    // One pass takes far longer than this test.
+    let picture = ["--batch", "--device", "reference", "--threads", "1", "--size", "2400x1600"];
+    let flags = ["--samples", "1000", "--out", "g.png", "--checkpoint", "g.exr", "--progress", "on"];
+    for milliseconds in [800, 3000, 10_000, 30_000] {
+        let at = TempDir::new().unwrap();
+        let at = at.path();
+        let mut child = weekender(at, &[&picture[..], &flags].concat()).spawn().unwrap();
+        let mut stderr = BufReader::new(child.stderr.take().unwrap());
+        stderr.read_line(&mut String::new()).unwrap();
+        sleep(Duration::from_millis(milliseconds));
+        signal(&child, "INT");
+        // Longer than the time within which two signals count as one.
+        sleep(Duration::from_millis(700));
+        signal(&child, "INT");
+        let status = wait(&mut child);
+        let mut message = String::new();
+        stderr.read_to_string(&mut message).unwrap();
+        assert_eq!(status.code(), Some(130), "{message}");
+        // The first signal may come before the first pass, which starts late on a busy machine.
+        if message.contains("ended at once") {
+            // The next run removes the lock.
+            assert!(names(at).iter().all(|name| name.ends_with(".lock")), "{:?} is written", names(at));
+            return;
+        }
+    }
+    panic!("no pass was under way when the first signal came");
+}
+
+/// What nohup does for SIGHUP, and a shell without job control for SIGINT.
+#[test]
+fn initially_ignored_signals_stay_ignored() {
+    for (ignored, heard, code) in [("HUP", "TERM", 143), ("INT", "HUP", 129), ("TERM", "INT", 130)] {
+        let at = TempDir::new().unwrap();
+        let at = at.path();
+        restore_signals();
+        let mut command = Command::new("sh");
+        command.args(["-c", "trap '' \"$0\" && exec \"$@\"", ignored, PROGRAM]);
+        command.args(PICTURE).arg("off").args(ENDLESS).current_dir(at);
+        let mut child =
+            command.stdin(Stdio::null()).stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
+        let path = at.join("g.exr");
+        until("the film is not written", || path.exists());
+        signal(&child, ignored);
+        // Twice, because the film is also written at the end.
+        for _ in 0..2 {
+            let before = film(&path).sample_count();
+            until("the film does not grow", || film(&path).sample_count() > before);
+            assert_eq!(child.try_wait().unwrap(), None, "SIG{ignored} has ended it");
+        }
+        signal(&child, heard);
+        assert_eq!(wait(&mut child).code(), Some(code), "SIG{ignored} was ignored, SIG{heard} was not");
+    }
+}
