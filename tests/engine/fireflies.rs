@@ -1,4 +1,5 @@
 //! Error estimates of scenes in which few paths find the light.
+
 use glam::DVec3;
 use std::sync::atomic::AtomicBool;
 use weekender::film::ErrorEstimate;

@@ -4,6 +4,7 @@
 //!
 //! It takes a moment by default, and as long as `WEEKENDER_SEARCH_SECONDS` says otherwise. A failing scene is shrunk and
 //! printed as a scene file.
+
 use glam::DVec3;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};

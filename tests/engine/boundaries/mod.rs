@@ -1,6 +1,7 @@
 //! Dependencies between rooms: each room may use only the rooms and crates listed for it. Lower layers come first, and
 //! an unused permission is an error. ARCHITECTURE.md describes the layers. Within rooms, no files import each other in
 //! a circle.
+
 mod circles;
 mod rooms;
 

@@ -1,4 +1,5 @@
 //! Compares each small function of the shaders with its twin: integers exactly, floats in units in the last place.
+
 mod boxes;
 mod names;
 mod numbers;

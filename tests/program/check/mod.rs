@@ -1,4 +1,5 @@
 //! `weekender check`: right pictures pass, planted mistakes are named, damaged files are understood.
+
 mod book;
 mod cases;
 

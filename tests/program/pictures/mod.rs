@@ -1,4 +1,5 @@
 //! Pictures that other programs write: what `compare`, `check` and `info` make of them.
+
 mod pipes;
 
 use std::path::{Path, PathBuf};
