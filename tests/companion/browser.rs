@@ -1,7 +1,6 @@
 //! The page in Chromium: nothing is cut, every diagram moves, and every link of a picture sets it.
 
 use super::PAGE;
-use crate::common::gpu;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::process::Command;

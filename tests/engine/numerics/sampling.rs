@@ -1,6 +1,6 @@
 //! Random numbers: cases 26 and 27, and the lanes against their scalar oracle.
 
-use crate::common::oracle::{self, laine_karras, pascal, pixel_key, sin_cos_turns, sobol_numbers};
+use crate::common::oracle::{laine_karras, pascal, pixel_key, sin_cos_turns, sobol_numbers};
 use crate::numerics::common::{Random, first};
 use proptest::prelude::*;
 use std::collections::HashSet;

@@ -1,6 +1,6 @@
 //! Standard input and output, and pipes.
 
-use crate::common::program::{self, text};
+use crate::common::program::text;
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
