@@ -21,6 +21,8 @@ pub mod comparison;
 #[doc(hidden)]
 pub mod denoise;
 #[doc(hidden)]
+pub mod excerpt;
+#[doc(hidden)]
 pub mod film;
 #[doc(hidden)]
 pub mod job;
@@ -31,9 +33,6 @@ pub mod kernel;
 pub mod measure;
 #[doc(hidden)]
 pub mod numbers;
-#[doc(hidden)]
-#[cfg(not(target_family = "wasm"))]
-pub mod pages;
 #[doc(hidden)]
 pub mod prepared;
 #[doc(hidden)]

@@ -60,22 +60,19 @@ fn run() -> Result<ExitCode, Failure> {
     }
 }
 
-/// Measurements and pages, which a program inside a page leaves out.
+/// Measurements, which a program inside a page leaves out.
 #[cfg(not(target_family = "wasm"))]
 fn run_tool(command: Command) -> Result<ExitCode, Failure> {
     use weekender::measure::{bench, report, stress};
-    use weekender::pages::{companion, gallery};
     match command {
         Command::Bench(options) => bench::run(&options),
         Command::Report(options) => report::run(&options),
         Command::Stress(options) => stress::run(&options),
-        Command::Companion(options) => companion::run(&options),
-        Command::Gallery(options) => gallery::run(&options),
         _ => unreachable!("run() has the others"),
     }
 }
 
 #[cfg(target_family = "wasm")]
 fn run_tool(_: Command) -> Result<ExitCode, Failure> {
-    Err(Failure::Input(anyhow::anyhow!("the program for browsers neither measures nor makes pages")))
+    Err(Failure::Input(anyhow::anyhow!("the program for browsers does not measure")))
 }

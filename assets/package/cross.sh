@@ -4,7 +4,7 @@
 #   assets/package/cross.sh arm        an archive for 64-bit ARM Linux, without the window
 #   assets/package/cross.sh macos      a bundle for macOS: all but the program, which is type-checked only, because
 #                                      linking needs Apple's libraries
-#   assets/package/cross.sh web        check.js: the program for browsers in a script, for `weekender companion`
+#   assets/package/cross.sh web        check.js: the program for browsers in a script, for the companion
 #   assets/package/cross.sh check      type-checks Windows and macOS; build-windows and build-arm make the programs alone
 # On a Mac, `macos` builds the program, too. Where rustup cannot add a target, its standard library is built from
 # Debian's sources. The archives need cargo-about.
@@ -41,7 +41,8 @@ cargo_for() {
 texts() {
     mkdir -p "$1"
     "$self" web
-    cp "$target/check.js" README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE "$1"
+    cargo run --release --locked -p companion -- --out "$target/companion"
+    cp -r "$target/companion" README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE "$1"
     cargo about generate --locked --offline --fail --target "$2" "${@:3}" --config assets/package/about.toml \
         --output-file "$1/LICENSES-OF-LIBRARIES.txt" assets/package/about.hbs
 }

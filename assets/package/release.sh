@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds what is released, in target/package: an archive with program, the program for browsers, manual pages, completions,
+# Builds what is released, in target/package: an archive with program, companion, manual pages, completions,
 # desktop entry, icons and licences, and a Debian package of the same files. Needs cargo-about and cargo-deb.
 #   assets/package/release.sh                          the full program
 #   assets/package/release.sh --no-default-features    without the window: the archive only
@@ -21,7 +21,7 @@ name=weekender-v$version-$target
 package=target/package
 root=$package/$name
 
-rm -rf "$package/texts" "$root"
+rm -rf "$package/texts" "$package/companion" "$root"
 mkdir -p "$root"
 
 cargo build --release --locked "${features[@]}"
@@ -30,7 +30,8 @@ cargo about generate --locked --offline --fail --target "$target" "${features[@]
     --config assets/package/about.toml --output-file "$package/texts/LICENSES-OF-LIBRARIES.txt" assets/package/about.hbs
 
 assets/package/cross.sh web
-cp target/release/weekender target/cross/check.js README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE "$root"
+cargo run --release --locked -p companion -- --out "$package/companion"
+cp -r target/release/weekender "$package/companion" README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE "$root"
 cp -r "$package/texts/." "$root"
 if [ ${#features[@]} -eq 0 ]; then
     cp -r assets/package/icons assets/package/weekender.desktop assets/package/weekender.metainfo.xml "$root"

@@ -2,7 +2,7 @@
 import { readFileSync, writeFileSync } from "node:fs";
 
 // The page is no package, so node would not take the file for a module.
-const script = readFileSync(new URL("../../assets/companion/diagrams.js", import.meta.url));
+const script = readFileSync(new URL("../../companion/assets/diagrams.js", import.meta.url));
 const { diagrams } = await import(`data:text/javascript;base64,${script.toString("base64")}`);
 for (const [name, { title, size, state, draw }] of Object.entries(diagrams)) {
   const [shapes, reading] = draw(state);

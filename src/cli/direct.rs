@@ -1,7 +1,6 @@
-//! Commands whose flags are their options: merge, info, gallery, companion, check, compare and stress.
+//! Commands whose flags are their options: merge, info, check, compare and stress.
 
 use super::values::{Auto, ProgressChoice, parse_levels};
-use crate::backends::BackendChoice;
 use crate::job::output::Encoding;
 use crate::render_cpu::Isa;
 use crate::stages::{Stage, Transfer};
@@ -33,47 +32,6 @@ pub struct InfoOptions {
     /// Print it as JSON
     #[arg(long)]
     pub json: bool,
-}
-
-/// Options of `weekender gallery`.
-#[derive(Clone, Debug, Args)]
-pub struct GalleryOptions {
-    /// The directory for the pictures and their page, index.html
-    #[arg(long, value_name = "DIRECTORY")]
-    pub out: PathBuf,
-    /// Small pictures with some noise, within a minute; finished full ones are kept
-    #[arg(long)]
-    pub quick: bool,
-    /// Render only these figures or stages
-    #[arg(long, value_name = "ID,...", value_delimiter = ',')]
-    pub only: Vec<String>,
-    /// Show progress on standard error; auto: if it is a terminal
-    #[arg(long, value_enum, default_value = "auto")]
-    pub progress: ProgressChoice,
-    #[command(flatten)]
-    pub backend: BackendChoice,
-}
-
-/// Options of `weekender companion`.
-#[derive(Clone, Debug, Args)]
-pub struct CompanionOptions {
-    /// Write index.html and its figures to this directory
-    #[arg(long, value_name = "DIRECTORY")]
-    pub out: PathBuf,
-    /// Read texts and sources from this checkout instead of the copies in the program, to see a changed text at once
-    #[arg(long, value_name = "DIRECTORY")]
-    pub source: Option<PathBuf>,
-    /// Write the page again when a file of --source changes, and reload it in the browser, until Ctrl-C
-    #[arg(long, requires = "source")]
-    pub watch: bool,
-    /// Small figures with some noise, within a minute; finished full ones are kept
-    #[arg(long)]
-    pub quick: bool,
-    /// Show progress on standard error; auto: if it is a terminal
-    #[arg(long, value_enum, default_value = "auto")]
-    pub progress: ProgressChoice,
-    #[command(flatten)]
-    pub backend: BackendChoice,
 }
 
 /// Options of `weekender check`.

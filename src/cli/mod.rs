@@ -17,9 +17,7 @@ mod values;
 pub use animation::FramesOptions;
 pub use bench::{BenchOptions, BenchScene};
 pub use diff::DiffOptions;
-pub use direct::{
-    CheckOptions, CompanionOptions, CompareOptions, GalleryOptions, InfoOptions, MergeOptions, StressOptions,
-};
+pub use direct::{CheckOptions, CompareOptions, InfoOptions, MergeOptions, StressOptions};
 pub use paths::{check_outputs, check_paths};
 pub use plan::{PartOptions, PlanOptions};
 pub use render::{BatchOptions, WindowOptions};
@@ -109,15 +107,6 @@ pub enum Command {
     /// fuses multiply and add, by one that does not, in f64, and by the GPU if available. The exit code is 0 if all
     /// are right, 1 if one is wrong and 2 if nothing could be run.
     Stress(Box<StressOptions>),
-    /// Write the companion: a web page that follows the book in pictures, in code and live
-    ///
-    /// The page is index.html in the directory --out, with its figures beside it. It needs no server and no network.
-    /// Only figures that changed are rendered again.
-    Companion(Box<CompanionOptions>),
-    /// Render every figure of the book, with a page that shows them
-    ///
-    /// Only pictures that are missing, damaged or changed are rendered. After Ctrl-C, the same command continues.
-    Gallery(Box<GalleryOptions>),
     /// Find the mistake in a picture that your own program rendered
     ///
     /// Finds the stage of the book that the picture shows, and the mistake with what to change. The exit code is 0 if all

@@ -38,7 +38,7 @@ const TELLING_FACTOR: f64 = 1.25;
 /// Weight of a new measurement of the overhead.
 const OVERHEAD_WEIGHT: f64 = 0.3;
 
-/// The number of paths that a dispatch should have, learnt from earlier dispatches. Twin: `Budget` in assets/web/film.js,
+/// The number of paths that a dispatch should have, learnt from earlier dispatches. Twin: `Budget` in companion/assets/film.js,
 /// which does not estimate the overhead.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {

@@ -170,7 +170,6 @@ impl Interrupt {
     }
 
     /// An instance that ignores signals; only its flag ends the work.
-    #[cfg(any(test, feature = "window"))]
     pub fn unheard() -> Self {
         Interrupt(Arc::default())
     }

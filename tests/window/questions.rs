@@ -17,8 +17,6 @@ pub trait Ask {
 
     fn remembered_mut(&mut self) -> &mut Remembered;
 
-    /// Writes the companion to this folder.
-    fn write_companion_to(&mut self, folder: &std::path::Path);
 
     /// The messages on the screen, oldest first.
     fn messages(&self) -> Vec<String>;
@@ -114,10 +112,6 @@ impl Ask for Window {
 
     fn remembered_mut(&mut self) -> &mut Remembered {
         &mut self.model.remembered
-    }
-
-    fn write_companion_to(&mut self, folder: &std::path::Path) {
-        self.files.companion = Some(folder.to_owned());
     }
 
     fn messages(&self) -> Vec<String> {

@@ -280,13 +280,12 @@ table! {
     Code "Code", "Shows the lines of the tracer that are new in this stage", key(Key::K), off(no_presentation),
         on(|f| f.model.shows(Tab::Code)), also("source rust wgsl program");
     Book "Read in the book", "Opens this section in the browser", also("web section");
-    Companion "Read in the companion",
-        "Opens the companion at this stage; writes it first, which takes 3 seconds", also("web page explain");
 
     [Some("Help")]
     FirstSteps "First steps", "Brings back the card with three things to try", off(no_presentation),
         on(|f| f.model.has_first_steps), also("tutorial introduction");
     Help "Keys and mouse", "All keys, and what the mouse does", key(Key::F1), also("shortcuts keyboard help");
+    Companion "Companion", "Opens the page that explains the book, at this stage", also("web read explain");
     Palette "Find a command…", "Type what you want to do", keys(CTRL, Key::P), also("palette search");
     About "About Weekender", "Version, licences, folder of the log, and how to report a fault",
         also("version licence report bug");
@@ -326,8 +325,6 @@ table! {
     StopSaving "Stop", "Gives up what is being made", unlisted();
     Recover "Resume", "Shows it, and adds more samples", unlisted();
     DeleteLeft "Delete it", "Deletes what the last window has left", unlisted();
-    WholeCompanion "Render it in full quality",
-        "Renders its pictures at full size and without noise, which takes some minutes", unlisted();
     GoOnFromKept "Continue from it", "Makes it the picture that is traced, and adds more samples",
         off(|f| match f.model.view.kept_partner() {
             Some(kept) if kept.document.is_none() => Some("Open the file to continue it".to_owned()),

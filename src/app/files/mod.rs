@@ -11,19 +11,17 @@ use crate::app::toolkit::{Answers, Toasts};
 use crate::app::tracing::subject::Subject;
 use crate::backends::BackendChoice;
 use crate::batch::{Event, Studio, write_frames};
-use crate::cli::{CompanionOptions, FramesOptions, ProgressChoice};
+use crate::cli::FramesOptions;
 use crate::denoise::{self, Denoised};
 use crate::film::Film;
 use crate::job::output::{Description, OutputFormat, is_named_picture, key, write_image};
 use crate::job::recipe::file;
 use crate::job::render::RenderJob;
 use crate::job::saved::{OpenError, Opened, SavedFilm, open, resume};
-use crate::pages::companion;
 use crate::progressive::describe::{counted, describe};
 use crate::progressive::{Phase, Status};
-use crate::render_cpu::CpuOptions;
 use crate::system::console;
-use crate::system::files::{cache_directory, replace_file};
+use crate::system::files::replace_file;
 use crate::system::interrupt::Interrupt;
 use eframe::egui::{ColorImage, Context};
 use scene_file::SceneFile;
@@ -48,8 +46,6 @@ pub enum Made {
     File(PathBuf),
     /// An animation of this number of frames in this folder.
     Frames(u32, PathBuf),
-    /// The companion, the full one or not.
-    Companion(bool),
 }
 
 /// Something that takes long to make in the background.
@@ -84,8 +80,6 @@ pub struct Files {
     pub resumed: Answers<Resumed>,
     /// Pictures for the clipboard, and what they are, in words.
     pub copied: Answers<(ColorImage, String)>,
-    /// Where the companion is written, if not in the usual folder.
-    pub companion: Option<PathBuf>,
 }
 
 impl Files {
@@ -207,31 +201,6 @@ impl Files {
         };
         toasts.offer(words, &[Command::StopSaving]);
         context.request_repaint_after(Duration::from_millis(250));
-    }
-
-    /// Writes the companion, a quick one with small figures or the full one.
-    ///
-    /// # Errors
-    /// Why it cannot begin.
-    pub fn write_companion(&mut self, context: &Context, is_quick: bool) -> Result<(), String> {
-        let out = self.companion_folder().ok_or("There is no home directory to write the companion in")?;
-        let options = CompanionOptions {
-            out,
-            source: None,
-            watch: false,
-            quick: is_quick,
-            progress: ProgressChoice::Off,
-            backend: BackendChoice::Cpu(CpuOptions::default()),
-        };
-        let time = if is_quick { "about 3 s" } else { "some minutes" };
-        self.make(context, format!("Writing the companion, {time}"), None, move |interrupt, _| {
-            let written = companion::write(&options, interrupt);
-            written.map(|_| Made::Companion(!is_quick)).map_err(|failure| failure.to_string())
-        })
-    }
-
-    pub fn companion_folder(&self) -> Option<PathBuf> {
-        self.companion.clone().or_else(|| Some(cache_directory()?.join("companion")))
     }
 
     /// Saves and copies what was asked for, once there are samples.

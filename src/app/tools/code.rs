@@ -4,11 +4,10 @@ use crate::app::commands::Snapshot;
 use crate::app::panels::right::scrolling;
 use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{About, hint, small, switch, tip};
-use crate::pages::companion::{Excerpt, Highlighter, excerpts_between};
+use super::quoted::excerpts_between;
+use crate::excerpt::Excerpt;
 use crate::stages::Stage;
-use eframe::egui::text::{LayoutJob, TextFormat};
-use eframe::egui::{FontSelection, Frame, Grid, Label, Margin, RichText, Sides, TextStyle, Ui};
-use std::sync::LazyLock;
+use eframe::egui::{Frame, Grid, Label, Margin, RichText, Sides, Ui};
 
 /// Meanings of words in the code that are not in the book.
 const WORDS: [(&str, &str); 18] = [
@@ -39,19 +38,12 @@ const LANGUAGES: [(&str, &str, &str); 3] = [
     ("rs", "Rust", "The program of the processor, for many lanes at once"),
 ];
 
-fn language(excerpt: &Excerpt) -> &str {
-    excerpt.file.rsplit('.').next().unwrap_or_default()
-}
-
-/// An excerpt, and its text in pieces, each with the class of its colour.
-type Coloured = (Excerpt, Vec<(String, String)>);
-
 /// The code of one stage.
 #[derive(Default)]
 pub struct Code {
     /// The stage whose excerpts these are.
     stage: Option<&'static Stage>,
-    excerpts: Vec<Coloured>,
+    excerpts: Vec<Excerpt>,
     /// The chosen language.
     language: Option<&'static str>,
 }
@@ -60,7 +52,7 @@ impl Code {
     pub fn ui(&mut self, ui: &mut Ui, snapshot: &Snapshot) {
         let stage = snapshot.document().stage();
         if stage != self.stage {
-            self.excerpts = coloured(stage.map(excerpts_of).unwrap_or_default());
+            self.excerpts = stage.map(excerpts_of).unwrap_or_default();
             self.stage = stage;
         }
         scrolling(ui, |ui| match stage {
@@ -74,7 +66,7 @@ impl Code {
 
     fn stage_ui(&mut self, ui: &mut Ui, stage: &Stage) {
         let is_there = |(ending, ..): &(&str, &str, &str)| {
-            self.excerpts.iter().any(|(excerpt, _)| language(excerpt) == *ending)
+            self.excerpts.iter().any(|excerpt| excerpt.language() == *ending)
         };
         let there = LANGUAGES.into_iter().filter(is_there);
         let options: Vec<_> = there.map(|(ending, name, help)| (ending, About::new(name, help))).collect();
@@ -89,9 +81,9 @@ impl Code {
                 }
             },
         );
-        let excerpts = || self.excerpts.iter().filter(|(excerpt, _)| language(excerpt) == shown);
+        let excerpts = || self.excerpts.iter().filter(|excerpt| excerpt.language() == shown);
         excerpts().for_each(|excerpt| excerpt_ui(ui, excerpt));
-        words_ui(ui, excerpts().map(|(excerpt, _)| excerpt));
+        words_ui(ui, excerpts());
     }
 }
 
@@ -101,17 +93,6 @@ fn excerpts_of(stage: &'static Stage) -> Vec<Excerpt> {
         .find(|earlier| earlier.section != stage.section);
     let new = excerpts_between(earlier.map(|earlier| earlier.section), stage.section);
     if new.is_empty() { excerpts_between(None, stage.section) } else { new }
-}
-
-/// The excerpts in colours; a test of the companion finds those that have none.
-fn coloured(excerpts: Vec<Excerpt>) -> Vec<Coloured> {
-    static HIGHLIGHTER: LazyLock<Option<Highlighter>> = LazyLock::new(|| Highlighter::new().ok());
-    let Some(highlighter) = &*HIGHLIGHTER else { return Vec::new() };
-    let colour = |excerpt: Excerpt| {
-        let pieces = highlighter.pieces(language(&excerpt), excerpt.text.trim_end()).unwrap_or_default();
-        (excerpt, pieces)
-    };
-    excerpts.into_iter().map(colour).collect()
 }
 
 fn words_ui<'a>(ui: &mut Ui, excerpts: impl Iterator<Item = &'a Excerpt>) {
@@ -140,7 +121,7 @@ fn words_ui<'a>(ui: &mut Ui, excerpts: impl Iterator<Item = &'a Excerpt>) {
     });
 }
 
-fn excerpt_ui(ui: &mut Ui, (excerpt, pieces): &Coloured) {
+fn excerpt_ui(ui: &mut Ui, excerpt: &Excerpt) {
     let colours = theme::colours(ui);
     let place = format!("{}, line {}", excerpt.file, excerpt.first);
     Sides::new().shrink_left().truncate().show(
@@ -156,27 +137,8 @@ fn excerpt_ui(ui: &mut Ui, (excerpt, pieces): &Coloured) {
     let well = Frame::new().fill(colours.well).stroke(ui.visuals().window_stroke).corner_radius(4);
     well.inner_margin(Margin::same(8)).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.add(Label::new(layout(ui, pieces)).wrap());
+        ui.add(Label::new(RichText::new(excerpt.text.trim_end()).monospace().line_height(Some(18.0))).wrap());
     });
-}
-
-fn layout(ui: &Ui, pieces: &[(String, String)]) -> LayoutJob {
-    let colours = theme::colours(ui);
-    let font_id = FontSelection::Style(TextStyle::Monospace).resolve(ui.style());
-    let mut job = LayoutJob::default();
-    for (text, class) in pieces {
-        let color = match class.as_str() {
-            "hl-k" => colours.accent,
-            "hl-t" => colours.good,
-            "hl-n" => colours.warn,
-            "hl-c" => colours.weak,
-            "hl-f" | "hl-m" => colours.strong,
-            _ => colours.text,
-        };
-        let format = TextFormat { line_height: Some(18.0), ..TextFormat::simple(font_id.clone(), color) };
-        job.append(text, 0.0, format);
-    }
-    job
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ pub mod dock;
 pub mod inspector;
 pub mod lanes;
 pub mod paths;
+mod quoted;
 pub mod tone;
 
 use crate::app::model::{Dock, Model};

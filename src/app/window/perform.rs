@@ -217,7 +217,7 @@ impl Window {
                 let url = document.stage().map_or_else(|| BOOK_URL.into(), Stage::url);
                 self.open_url(context, url);
             }
-            C::Companion | C::WholeCompanion => self.write_companion(context, command == C::Companion),
+            C::Companion => self.show_companion(context),
 
             C::FirstSteps => {
                 (model.has_first_steps, remembered.is_greeted) =
@@ -812,32 +812,23 @@ impl Window {
         }
     }
 
-    /// Opens a page in the browser, or tells its address. Returns whether there is a browser.
-    pub(super) fn open_url(&mut self, context: &Context, url: String) -> bool {
-        let has_browser = !self.shell.dialogs.system.is_there || webbrowser::Browser::is_available();
-        if has_browser {
+    /// Opens a page in the browser, or tells its address.
+    fn open_url(&mut self, context: &Context, url: String) {
+        if !self.shell.dialogs.system.is_there || webbrowser::Browser::is_available() {
             context.open_url(egui::OpenUrl::new_tab(url));
         } else {
             self.shell.toasts.bad(format!("No browser could be started; the page is {url}"));
         }
-        has_browser
     }
 
-    pub(super) fn write_companion(&mut self, context: &Context, is_quick: bool) {
-        if let Err(reason) = self.files.write_companion(context, is_quick) {
-            self.shell.toasts.bad(format!("Companion: {reason}"));
-        }
-    }
-
-    /// Opens the companion that was written at the stage that is shown.
-    pub(super) fn show_companion(&mut self, context: &Context, is_full: bool) {
-        let Some(folder) = self.files.companion_folder() else { return };
-        let url = companion::url(&folder.join("index.html"), self.document().stage());
-        if is_full {
-            self.shell.toasts.good("The full companion is written; reload it in your browser");
-        } else if self.open_url(context, url) {
-            let words = "The companion is open in your browser";
-            self.shell.toasts.good_with(words, &[Command::WholeCompanion]);
+    /// Opens the companion at the stage that is shown.
+    fn show_companion(&mut self, context: &Context) {
+        match companion::page() {
+            Some(page) => self.open_url(context, companion::url(&page, self.document().stage())),
+            None => self.shell.toasts.bad(
+                "The companion is not installed beside this program; in its sources, cargo run --release -p companion \
+                 writes the page",
+            ),
         }
     }
 

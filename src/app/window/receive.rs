@@ -24,7 +24,6 @@ impl Window {
                     let frames = counted(count.into(), "frame");
                     self.shell.toasts.good(format!("Saved {frames} in {}", folder.display()));
                 }
-                Some(Made::Companion(is_full)) => self.show_companion(context, is_full),
                 None => {
                     self.shell.leaves_when_saved = false;
                     self.shell.toasts.add_offers(&[Command::Save]);

@@ -2,7 +2,6 @@
 
 mod leftovers;
 mod lock;
-mod pages;
 mod paths;
 mod read;
 mod replace;
@@ -10,9 +9,8 @@ mod standard;
 mod sync;
 
 pub use lock::{FileLock, LockedError, lock_path};
-pub use pages::{GENERATOR, check_page};
 pub use paths::{
-    STANDARD, ShownPath, cache_directory, home_directory, identity, make_directory, pictures_directory,
+    STANDARD, ShownPath, home_directory, identity, make_directory, pictures_directory,
     state_directory, temporary_directory,
 };
 pub(crate) use read::read_at;

@@ -64,27 +64,19 @@ pub fn make_directory(directory: &Path) -> Result<()> {
     created.with_context(context)
 }
 
-/// For state and for caches: the variable that names the directory, and its default place in the home directory.
-const USUAL: [(&str, &str); 2] = if cfg!(windows) {
-    [("LOCALAPPDATA", "AppData/Local"), ("LOCALAPPDATA", "AppData/Local")]
+/// The variable that names the directory for state, and its default place in the home directory.
+const USUAL: (&str, &str) = if cfg!(windows) {
+    ("LOCALAPPDATA", "AppData/Local")
 } else if cfg!(target_vendor = "apple") {
-    [("XDG_STATE_HOME", "Library/Application Support"), ("XDG_CACHE_HOME", "Library/Caches")]
+    ("XDG_STATE_HOME", "Library/Application Support")
 } else {
-    [("XDG_STATE_HOME", ".local/state"), ("XDG_CACHE_HOME", ".cache")]
+    ("XDG_STATE_HOME", ".local/state")
 };
 
 /// The program's directory for state that outlives it, such as rescued films; it may not exist yet.
 pub fn state_directory() -> Option<PathBuf> {
-    let [(variable, usual), _] = USUAL;
+    let (variable, usual) = USUAL;
     own_directory(env::var_os(variable), home_directory(), usual)
-}
-
-/// The program's directory for what it can recreate, such as its web pages; it may not exist yet.
-pub fn cache_directory() -> Option<PathBuf> {
-    let [_, (variable, usual)] = USUAL;
-    let own = own_directory(env::var_os(variable), home_directory(), usual)?;
-    // On Windows, this is the directory for state, too.
-    Some(if cfg!(windows) { own.join("cache") } else { own })
 }
 
 /// The program's directory inside the one that a variable names or, unless that is absolute, inside `usual` in `home`.

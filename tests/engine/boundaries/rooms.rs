@@ -2,6 +2,7 @@
 
 /// Each room with the rooms that it may use, one row per room. Lower layers come first.
 pub const ROOMS: &str = "\
+excerpt:
 system:
 numbers:
 scene:
@@ -19,12 +20,10 @@ cli: system scene stages film job render_cpu render_gpu backends progressive
 batch: system scene stages film denoise job backends progressive cli
 comparison: system numbers scene stages film job kernel render_cpu render_gpu backends cli
 measure: system numbers scene stages film denoise job kernel render_cpu render_gpu backends cli comparison
-pages: system numbers scene stages film denoise job kernel render_cpu render_gpu backends progressive cli batch comparison measure
-app: system numbers scene stages film denoise job render_cpu render_gpu backends progressive cli batch comparison measure pages";
+app: system numbers scene stages film denoise job render_cpu render_gpu backends progressive cli batch comparison measure excerpt";
 
 /// Crates that only some rooms may use.
 pub const CRATES: &[(&str, &[&str])] = &[
-    ("base64", &["pages"]),
     ("egui", &["app"]),
     ("eframe", &["app"]),
     ("egui_plot", &["app"]),
@@ -37,14 +36,10 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("fearless_simd", &["denoise", "render_cpu"]),
     ("obvhs", &["prepared"]),
     ("libm", &["numbers", "scene"]),
-    ("image", &["job", "comparison", "pages", "app"]),
+    ("image", &["job", "comparison", "app"]),
     ("indicatif", &["system", "cli", "measure"]),
-    ("maud", &["pages"]),
     ("plotters", &["numbers"]),
     ("clap", &["system", "job", "cli"]),
     ("env_filter", &["system"]),
     ("signal_hook", &["system"]),
-    ("pulldown_cmark", &["pages"]),
-    ("syntect", &["pages"]),
-    ("math_core", &["pages"]),
 ];

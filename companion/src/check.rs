@@ -1,0 +1,38 @@
+//! The check inside the page: the program compiled for browsers, and what the page's script knows of the book.
+
+use weekender::numbers::heat::{HeatScale, colour_at};
+use weekender::stages::Stage;
+use weekender::system::files::replace_file;
+use anyhow::{Context, Result};
+use serde_json::json;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+/// The script that holds the program.
+const FILE: &str = "check.js";
+
+/// The script in the build folder that this program is in; `assets/package/cross.sh web` makes it.
+fn find() -> Option<PathBuf> {
+    let program = env::current_exe().ok()?;
+    program.ancestors().map(|folder| folder.join("cross").join(FILE)).find(|path| path.is_file())
+}
+
+/// Copies the script beside the page.
+pub fn copy(out: &Path) -> Result<()> {
+    let Some(from) = find() else { return Ok(()) };
+    let script = fs::read(&from).with_context(|| format!("cannot read {}", from.display()))?;
+    Ok(replace_file(&out.join(FILE), |writer| writer.write_all(&script))?)
+}
+
+/// What the page's script reads, as JSON that is safe inside a `<script>` element.
+pub fn data() -> String {
+    let stages: Vec<_> = Stage::ALL.iter().map(|stage| [stage.id, stage.section, stage.title]).collect();
+    let scale = HeatScale::DISPLAYED;
+    let colours: Vec<[u8; 3]> = (0..=6).map(|step| colour_at(f64::from(step) / 6.0)).collect();
+    let labels: Vec<String> = scale.marks().into_iter().map(|(_, label)| label).collect();
+    let scale = json!({ "title": scale.title, "colours": colours, "labels": labels });
+    json!({ "program": find().map(|_| FILE), "stages": stages, "scale": scale })
+        .to_string()
+        .replace("</", "<\\/")
+}

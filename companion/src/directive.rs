@@ -1,0 +1,174 @@
+//! Directives: paragraphs such as `{{figure sky}}` that become parts of the page.
+
+use crate::library::FOLDER;
+use crate::lists;
+use crate::picture::Picture;
+use crate::pictures;
+use crate::prose::Place;
+use crate::site::Site;
+use crate::timeline;
+use crate::uses::Uses;
+use crate::words::{numbered, typographic};
+use crate::figure::Figure;
+use crate::stills::has_few_pixels;
+use weekender::excerpt::Excerpt;
+use weekender::stages::Stage;
+use anyhow::{Context, Error, Result, bail};
+use maud::{Markup, PreEscaped, html};
+
+/// The directives and their arguments. More lines hold a caption, or what to quote.
+const KNOWN: &str = "figure ID, code, fold TITLE, unfold, mistakes STAGE, limits STAGE, samples STAGE, denoised STAGE SAMPLES, table NAME, chart NAME, diagram NAME, timeline STAGE, glossary, references";
+
+/// The HTML of a directive, given without its braces.
+pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) -> Result<Markup> {
+    let (head, more) = directive.split_once('\n').unwrap_or((directive, ""));
+    let words: Vec<&str> = head.split_whitespace().collect();
+    // A caption is Markdown.
+    let mut caption = || match more {
+        "" => Ok(None),
+        // The line to name is the directive's.
+        text => place.inside(site, text, uses).map(Some).map_err(|fault| Error::msg(fault.message)),
+    };
+    match words.as_slice() {
+        ["figure", id] => figure(id, caption()?, None, uses),
+        ["figure", id, "crop", x, y, width, height] => {
+            let crop = [x, y, width, height].map(|number| number.parse().ok());
+            let [Some(x), Some(y), Some(width), Some(height)] = crop else { bail!("a crop is four numbers") };
+            figure(id, caption()?, Some([x, y, width, height]), uses)
+        }
+        ["code"] => code(site, place, more),
+        ["mistakes", stage] => pictures::mistakes(stage, more, uses),
+        ["limits", stage] => pictures::variants(stage, more, false, uses),
+        ["samples", stage] => pictures::variants(stage, more, true, uses),
+        ["fold", ..] => {
+            let title = place.inside(site, &words[1..].join(" "), uses)?;
+            Ok(PreEscaped(format!("<details class=\"fold\"><summary>{}</summary>", title.0)))
+        }
+        ["unfold"] => Ok(PreEscaped("</details>".to_owned())),
+        ["denoised", stage, samples] => {
+            let caption = caption()?.context("a figure of denoising needs a caption")?;
+            let panels = pictures::denoised(stage, samples, uses)?;
+            Ok(
+                html! { figure .figure .wide id={ "denoised-" (stage) } { (panels) (numbered(&caption, uses)) } },
+            )
+        }
+        ["table", name] => site.measured.table(name),
+        ["chart", name] => site.measured.chart(name, uses),
+        ["diagram", name] => diagram(site, name, caption()?, uses),
+        ["timeline", stage] => timeline::figure(stage, uses),
+        ["glossary"] => Ok(lists::glossary(site, place, uses)?),
+        ["references"] => Ok(lists::references(site, place, uses)?),
+        _ => bail!("{{{{{directive}}}}} is not a directive; use one of {KNOWN}"),
+    }
+}
+
+/// A panel's picture with the switch and the sliders that the script adds. `small` is for narrow windows; the panel is
+/// then the page's first.
+pub fn panel(
+    stage: &Stage,
+    label: Option<&str>,
+    crop: Option<[f64; 4]>,
+    small: Option<&Picture>,
+    uses: &mut Uses,
+) -> Markup {
+    // The window opens the page at a stage.
+    let id = format!("stage-{}", stage.id);
+    let id = Some(id).filter(|id| small.is_none() && uses.anchors.insert(id.clone()));
+    let (file, [width, height]) =
+        (format!("figures/{}.png", stage.id), [stage.setup.width, stage.setup.height]);
+    html! {
+        div .panel id=[id] data-stage=(stage.id) {
+            div .live-frame { img .pixels[has_few_pixels(stage)] src=(file) width=(width) height=(height) alt=(stage.alt)
+                loading=[small.is_none().then_some("lazy")] fetchpriority=[small.map(|_| "high")]
+                srcset=[small.map(|small| format!("{}, {file} {width}w", small.candidate()))]
+                sizes=[small.map(|_| "(max-width: 40rem) 14rem, 70rem")]; }
+            @if let Some([x, y, w, h]) = crop {
+                @let [wide, left, top] = [f64::from(width) / w, -x / w, -y / h].map(|share| 100.0 * share);
+                div .crop style=(format!("aspect-ratio: {w} / {h}")) {
+                    img src=(file) width=(width) height=(height) alt="A part of the picture, enlarged" loading="lazy"
+                        style=(format!("width: {wide:.3}%; left: {left:.3}%; top: {top:.3}%"));
+                }
+            }
+            @if let Some(label) = label { p .label { (typographic(label)) } }
+        }
+    }
+}
+
+/// `crop` is a part to show enlarged: left, top, width and height in the stage's pixels.
+fn figure(id: &str, caption: Option<Markup>, crop: Option<[f64; 4]>, uses: &mut Uses) -> Result<Markup> {
+    let figure = Figure::find(id);
+    let figure =
+        figure.with_context(|| format!("there is no figure {id:?}; companion/assets/figures.toml has them"))?;
+    if !uses.anchors.insert(format!("figure-{id}")) {
+        bail!("the figure {id:?} is on the page already; link it as [text](#figure-{id})");
+    }
+    let is_wide = figure.panels.len() > 1;
+    Ok(html! {
+        figure .figure .wide[is_wide] id={ "figure-" (id) } {
+            div .panels .{ "of-" (figure.panels.len()) } {
+                @for shown in &figure.panels { (panel(shown.stage(), is_wide.then_some(shown.label.as_str()), crop, None, uses)) }
+            }
+            (numbered(&html! {
+                strong { (typographic(&figure.title)) "." } " "
+                (caption.unwrap_or_else(|| html! { (typographic(&figure.caption)) }))
+            }, uses))
+        }
+    })
+}
+
+/// Order of the switch between languages.
+const LANGUAGES: [&str; 3] = ["c", "wgsl", "rs"];
+
+/// Excerpts, one a line, with a switch between their languages. The first is open.
+fn code(site: &Site, place: &Place<'_>, wanted: &str) -> Result<Markup> {
+    let excerpts: Result<Vec<Excerpt>, String> =
+        wanted.lines().map(|line| site.library.excerpt(line)).collect();
+    let excerpts = excerpts.map_err(Error::msg)?;
+    let mut languages: Vec<&str> = excerpts.iter().map(Excerpt::language).collect();
+    let open = languages.first().copied().unwrap_or_default();
+    languages.sort_by_key(|language| LANGUAGES.iter().position(|known| known == language));
+    languages.dedup();
+    Ok(html! {
+        div .tabbed {
+            @if languages.len() > 1 {
+                div .tabs role="group" aria-label="Language" {
+                    @for language in &languages {
+                        button type="button" data-language=(language) aria-pressed=(*language == open) {
+                            @match *language { "rs" => "Rust", other => (other.to_uppercase()) }
+                        }
+                    }
+                }
+            }
+            @for excerpt in &excerpts {
+                @let language = excerpt.language();
+                @let Excerpt { file, first, last, text } = excerpt;
+                figure .code .shown[language == open] data-language=(language) {
+                    figcaption {
+                        code .path { (file) } " "
+                        span .lines { @if first == last { "line " (first) } @else { "lines " (first) " to " (last) } }
+                    }
+                    @let code = site.highlighter.html(language, text)?;
+                    // The others have names of their own.
+                    pre { code { (if language == open { place.coloured(&code) } else { code }) } }
+                }
+            }
+        }
+    })
+}
+
+/// Diagrams are SVG files that take their colours from the text around them. Without a caption, they have their title.
+fn diagram(site: &Site, name: &str, caption: Option<Markup>, uses: &mut Uses) -> Result<Markup> {
+    let path = format!("{FOLDER}/diagrams/{name}.svg");
+    // The line to name is the directive's.
+    let text = site.library.read(&path).map_err(|fault| Error::msg(fault.to_string()))?;
+    let start = text.find("<svg").with_context(|| format!("{path} has no <svg> element"))?;
+    let title = text.split_once("<title").and_then(|(_, rest)| rest.split_once('>'));
+    let title = title.and_then(|(_, rest)| rest.split_once("</title>")).map(|(title, _)| title.trim());
+    let caption = caption.or(title.map(|title| PreEscaped(title.to_owned())));
+    Ok(html! {
+        figure .diagram id={ "diagram-" (name) } {
+            div .scroll tabindex="0" role="group" aria-label="Diagram" { (PreEscaped(text[start..].trim())) }
+            (numbered(&caption.unwrap_or_default(), uses))
+        }
+    })
+}

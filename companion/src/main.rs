@@ -1,0 +1,82 @@
+//! Writes the companion: one web page that follows the book, made of the texts in `docs/companion`, the sources, the
+//! stages' pictures and measurements.
+
+#![warn(clippy::disallowed_macros)]
+
+mod agreement;
+mod back_matter;
+mod chapter;
+mod check;
+mod directive;
+mod figure;
+mod highlight;
+mod library;
+mod lists;
+mod live;
+mod measured;
+mod options;
+mod page;
+mod picture;
+mod pictures;
+mod prose;
+mod site;
+mod stills;
+mod timeline;
+mod uses;
+mod words;
+
+use clap::Parser;
+use library::Library;
+use options::Options;
+use site::Site;
+use std::process::ExitCode;
+use stills::{Outcome, Work};
+use weekender::system::failure::Failure;
+use weekender::system::files::{make_directory, write_text};
+use weekender::system::interrupt::{self, Interrupt};
+use weekender::system::journal;
+
+fn main() -> ExitCode {
+    interrupt::survive_file_size_limit();
+    let version = concat!("weekender companion ", env!("CARGO_PKG_VERSION")).to_owned();
+    journal::watched(version, || run().unwrap_or_else(|failure| failure.report()))
+}
+
+fn run() -> Result<ExitCode, Failure> {
+    let options = Options::try_parse().map_err(Failure::CommandLine)?;
+    let interrupt = Interrupt::install().map_err(Failure::Run)?;
+    let (outcome, made) = if options.only.is_empty() {
+        (write(&options, &interrupt)?, options.index())
+    } else {
+        (Work::begin(&options, &interrupt)?.render()?, options.figures())
+    };
+    outcome.report(&made, &interrupt)
+}
+
+/// Writes the page and renders the pictures that changed, until `interrupt` is set.
+///
+/// # Errors
+/// [`Failure::Input`] if nothing was written; [`Failure::BrokeOff`] or [`Failure::Run`] otherwise.
+fn write(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+    let page = Site::read(&Library::of_checkout()).and_then(|site| page::render(&site));
+    let page = page.map_err(Failure::Input)?;
+    let (out, index) = (&options.out, options.index());
+    page::check_replaceable(&index).map_err(Failure::Input)?;
+    let work = Work::begin(options, interrupt)?;
+    make_directory(&out.join(picture::FOLDER)).map_err(Failure::Input)?;
+    // Write the page first, so that it can be read while its figures are rendered.
+    check::copy(out).map_err(Failure::Run)?;
+    write_text(&out.join("later.js"), &page.later).map_err(Failure::run)?;
+    write_text(&index, &page.html).map_err(Failure::run)?;
+    let mut missing = page.pictures.len();
+    for picture in page.pictures.iter().take_while(|_| !interrupt.is_set()) {
+        picture.render(out).map_err(Failure::Run)?;
+        missing -= 1;
+    }
+    let mut outcome = work.render()?;
+    outcome.missing += missing;
+    Ok(outcome)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,236 @@
+//! The page around the chapters.
+
+use crate::agreement;
+use crate::chapter::Chapter;
+use crate::check;
+use crate::directive;
+use crate::library::Fault;
+use crate::picture::Picture;
+use crate::prose;
+use crate::site::Site;
+use crate::uses::Uses;
+use crate::live;
+use weekender::stages::{BOOK_URL, Stage, book_url, heading};
+use weekender::system::files::check_writable;
+use anyhow::{Result, ensure};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// Styles and scripts.
+const ASSETS: &str = "companion/assets";
+
+/// Marks a page as the program's own. It must be within the first [`HEAD`] bytes.
+const GENERATOR: &str = "<meta name=\"generator\" content=\"Weekender\">";
+
+/// Bytes of a page that are searched.
+const HEAD: u64 = 4096;
+
+const TITLE: &str = "Weekender, the companion";
+const ABOUT: &str = "Ray Tracing in One Weekend, chapter by chapter: in pictures, in code, and live.";
+
+#[derive(Debug)]
+pub struct Page {
+    /// The content of `index.html`.
+    pub html: String,
+    /// The content of `later.js`: what the first screen does not need.
+    pub later: String,
+    /// Its own pictures.
+    pub pictures: Vec<Picture>,
+}
+
+/// Renders everything. Fails with the first [`Fault`] of the texts, or if a stage has no data for a browser.
+pub fn render(site: &Site) -> Result<Page> {
+    let mut uses = Uses::default();
+    let content = html! {
+        (cover(&mut uses))
+        @for chapter in &site.chapters { (section(site, chapter, &mut uses)?) }
+    };
+    site.check(&uses, &content.0)?;
+    let live = live::live_data(Stage::ALL)?;
+    let fonts = serde_json::json!(site.library.read(&format!("{ASSETS}/more-fonts.css"))?);
+    let later = format!("var later = {{ fonts: {fonts}, live: {live} }};\n");
+    uses.pictures.push(Picture::small(cover_stage()));
+    let html = document(site, &content)?.into_string();
+    Ok(Page { html, later, pictures: uses.pictures })
+}
+
+/// Refuses to replace the page of another program.
+///
+/// # Errors
+/// If `path` cannot be written or holds something without [`GENERATOR`].
+pub fn check_replaceable(path: &Path) -> Result<()> {
+    if !path.exists() {
+        return Ok(());
+    }
+    check_writable(path)?;
+    let mut head = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
+    let is_own = head.is_empty() || head.windows(GENERATOR.len()).any(|part| part == GENERATOR.as_bytes());
+    ensure!(
+        read.is_ok() && is_own,
+        "{}: there is a page that Weekender did not write; move it away, or choose another directory with --out",
+        path.display()
+    );
+    Ok(())
+}
+
+/// The last stage, whose picture opens the page.
+fn cover_stage() -> &'static Stage {
+    &Stage::ALL[Stage::ALL.len() - 1]
+}
+
+/// Styles and scripts are read like the texts, so that an author sees a change at once.
+fn document(site: &Site, content: &Markup) -> Result<Markup, Fault> {
+    let assets = |names: &[&str]| -> Result<Markup, Fault> {
+        let texts: Result<Vec<_>, _> =
+            names.iter().map(|name| site.library.read(&format!("{ASSETS}/{name}"))).collect();
+        Ok(PreEscaped(texts?.concat()))
+    };
+    Ok(html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                (PreEscaped(GENERATOR))
+                title { (TITLE) }
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="description" content=(ABOUT);
+                meta name="color-scheme" content="light dark";
+                link rel="icon" href="data:,";
+                style { (assets(&["fonts.css", "page.css", "live.css", "check.css"])?) }
+                // Runs before anything is drawn, so that the page does not flash in the wrong colours.
+                script { (assets(&["theme.js"])?) }
+            }
+            body id="top" {
+                a .skip href="#content" { "Skip to the text" }
+                (navigation(site))
+                main id="content" tabindex="-1" {
+                    (content)
+                    (colophon())
+                }
+                script type="module" { (assets(&["page.js"])?) }
+                script type="module" { (assets(&["diagrams.js"])?) }
+                script type="module" { (assets(&["scene.js", "film.js", "live.js"])?) }
+                script type="application/json" id="check-data" { (PreEscaped(check::data())) }
+                script type="module" { (assets(&["check.js"])?) }
+            }
+        }
+    })
+}
+
+fn cover(uses: &mut Uses) -> Markup {
+    let stage = cover_stage();
+    html! {
+        header .cover {
+            p .kicker { "Weekender, the companion" }
+            h1 { cite { "Ray Tracing in One Weekend" } ", many rays at a time" }
+            p .lead {
+                "The book, chapter by chapter: every picture rendered by the program, every excerpt its real code, and \
+                 every figure live in your browser. Then: lanes, threads and GPUs, measured."
+            }
+            div .check-box {}
+            figure .figure id="figure-cover" {
+                div .panels { (directive::panel(stage, None, None, Some(&Picture::small(stage)), uses)) }
+                figcaption { "The book’s last picture. Press " em { "Run" } " and drag it: your own device then traces it, with the program’s shaders." }
+            }
+        }
+    }
+}
+
+fn colophon() -> Markup {
+    html! {
+        footer .colophon {
+            p {
+                "Made by " code { "cargo run --release -p companion" } ", version " (env!("CARGO_PKG_VERSION"))
+                ". The book is by Peter Shirley, Trevor David Black and Steve Hollasch: "
+                a href=(BOOK_URL) { "Ray Tracing in One Weekend" } "."
+            }
+            p { a href="#top" { "Back to the top" } }
+        }
+    }
+}
+
+fn navigation(site: &Site) -> Markup {
+    let last_of_book = site.chapters.iter().rposition(|chapter| chapter.facts.book.is_some());
+    let (with_book, beyond) = site.chapters.split_at(last_of_book.map_or(0, |place| place + 1));
+    html! {
+        nav .contents id="contents" aria-label="Chapters" {
+            details {
+                summary { span .now { "Chapters" } }
+                div .list {
+                    a .home href="#top" { strong { "Weekender" } " the companion" }
+                    @for (title, chapters) in [("With the book", with_book), ("Beyond the book", beyond)] {
+                        p .part { (title) }
+                        ol {
+                            @for chapter in chapters {
+                                li {
+                                    a href={ "#" (chapter.id) } {
+                                        span .number { (chapter.number_prefix()) } (chapter.short())
+                                    }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn section(site: &Site, chapter: &Chapter, uses: &mut Uses) -> Result<Markup, Fault> {
+    let (id, title) = (&chapter.id, &chapter.facts.title);
+    let text = prose::chapter(site, chapter, directive::html, uses)?;
+    agreement::check(&site.library, chapter)?;
+    let of_book = |number| {
+        let found = heading(number).map(|heading| (number, book_url(number), heading));
+        found.ok_or_else(|| Fault::new(&chapter.file, 1, format!("the book has no chapter {number:?}")))
+    };
+    let book = chapter.facts.book.as_deref().map(of_book).transpose()?;
+    Ok(html! {
+        section .chapter aria-labelledby=(id) {
+            header .head {
+                p .kicker {
+                    @if let Some(number) = chapter.shown_number() { "Chapter " (number) }
+                    @if let Some((number, url, heading)) = book {
+                        @if chapter.shown_number().is_some() { " · " }
+                        a .book href=(url) {
+                            "The book, chapter " (number) @if heading != title { ": " (heading) }
+                        }
+                    }
+                }
+                h2 id=(id) {
+                    (title)
+                    a .anchor href={ "#" (id) } aria-label="Link to this chapter" { "#" }
+                }
+            }
+            (text)
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_own_pages_are_replaced() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("index.html");
+        check_replaceable(&path).unwrap();
+        let at_the_end = "x".repeat(HEAD as usize - GENERATOR.len());
+        for (page, is_own) in [
+            (String::new(), true),
+            (format!("<!DOCTYPE html><head>{GENERATOR}<title>T</title>"), true),
+            (format!("{at_the_end}{GENERATOR}"), true),
+            (format!("{at_the_end}x{GENERATOR}"), false),
+            ("<title>My own pictures, rendered by Weekender</title>".to_owned(), false),
+        ] {
+            std::fs::write(&path, &page).unwrap();
+            let checked = check_replaceable(&path).map_err(|error| error.to_string());
+            assert_eq!(checked.is_ok(), is_own, "{checked:?}");
+            assert!(checked.err().is_none_or(|message| message.contains("index.html: there is a page")));
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! The page's own pictures beside the gallery's stills: what common mistakes look like, as `weekender check` renders
+//! them, and a picture before and after denoising.
+
+use crate::picture::{NOISY_WIDTH, Picture, Tracer};
+use crate::uses::Uses;
+use crate::words::typographic;
+use weekender::comparison::check::{MISTAKES, Mistake};
+use weekender::progressive::describe::counted;
+use weekender::stages::Stage;
+use anyhow::{Context, Result};
+use maud::{Markup, html};
+
+/// Width and samples per pixel of a picture in a row. The plain tracer takes fewer samples.
+const SMALL: (u32, u64) = (180, 128);
+
+/// A row of pictures: the stage as it should be, and with each of these mistakes, whose ids are words.
+pub fn mistakes(stage: &str, ids: &str, uses: &mut Uses) -> Result<Markup> {
+    let stage = Stage::find(stage)?;
+    let recipe = stage.recipe();
+    let find = |id| {
+        let is_it = |mistake: &&Mistake| mistake.id == id && (mistake.applies)(&recipe);
+        MISTAKES.iter().find(is_it).with_context(|| format!("{} can have no mistake {id:?}", stage.id))
+    };
+    let plain = |name, mistake| Picture::new(stage, name, SMALL, Tracer::Plain(mistake));
+    let wrong: Result<Vec<&'static Mistake>> = ids.split_whitespace().map(find).collect();
+    Ok(html! {
+        ul .mistakes {
+            (entry(plain("right", None), "as it should be", "", uses))
+            @for mistake in wrong? {
+                (entry(plain(mistake.id, Some(mistake)), mistake.title, mistake.remedy, uses))
+            }
+        }
+    })
+}
+
+/// A row of pictures of a stage with these limits on the rays of a path or, if `is_of_samples`, with so many samples.
+pub fn variants(stage: &str, numbers: &str, is_of_samples: bool, uses: &mut Uses) -> Result<Markup> {
+    let stage = Stage::find(stage)?;
+    let numbers: Result<Vec<u32>, _> = numbers.split_whitespace().map(str::parse).collect();
+    let mut shown = |number: u32| {
+        let mut picture =
+            Picture::new(stage, if is_of_samples { "samples" } else { "limit" }, SMALL, Tracer::Fast);
+        let title = if is_of_samples {
+            picture.recipe.samples_per_pixel = number.into();
+            counted(number.into(), "sample") + " per pixel"
+        } else {
+            picture.recipe.settings.max_depth = number;
+            format!("at most {} per path", counted(number.into(), "ray"))
+        };
+        entry(picture, &title, "", uses)
+    };
+    Ok(html! { ul .mistakes { @for number in numbers.context("give whole numbers")? { (shown(number)) } } })
+}
+
+fn entry(picture: Picture, title: &str, remedy: &str, uses: &mut Uses) -> Markup {
+    let title = typographic(title);
+    let title = title[..1].to_uppercase() + &title[1..];
+    let shown = html! {
+        li {
+            (picture.img(&title))
+            p {
+                strong { (title) "." }
+                @if !remedy.is_empty() {
+                    " Remedy: "
+                    @for (index, part) in remedy.split('`').enumerate() {
+                        @if index % 2 == 1 { code { (part) } } @else { (typographic(part)) }
+                    }
+                    "."
+                }
+            }
+        }
+    };
+    uses.pictures.push(picture);
+    shown
+}
+
+/// A stage with few samples, before and after denoising, for a wipe.
+pub fn denoised(stage: &str, samples: &str, uses: &mut Uses) -> Result<Markup> {
+    let (stage, samples) = (Stage::find(stage)?, samples.parse().context("give the samples per pixel")?);
+    let mut panel = |name, tracer, label: &str| {
+        let picture = Picture::new(stage, name, (NOISY_WIDTH, samples), tracer);
+        uses.pictures.push(picture.clone());
+        html! { div .panel { (picture.img(label)) p .label { (label) } } }
+    };
+    let label = format!("{samples} samples per pixel");
+    let noisy = panel("noisy", Tracer::Fast, &label);
+    let panels = [noisy, panel("denoised", Tracer::Denoised, &(label + ", denoised"))];
+    Ok(html! { div .panels .of-2 { @for panel in panels { (panel) } } })
+}

@@ -1,0 +1,67 @@
+//! Everything that the page's texts can refer to.
+
+use crate::back_matter::{GLOSSARY, REFERENCES, Reference, Term};
+use crate::chapter::Chapter;
+use crate::highlight::Highlighter;
+use crate::library::{Entry, Fault, Library};
+use crate::measured::Measured;
+use crate::uses::Uses;
+use anyhow::{Result, anyhow};
+use math_core::{LatexToMathML, MathCoreConfig};
+
+/// The targets available to texts.
+pub struct Site {
+    /// Where diagrams are read from.
+    pub library: Library,
+    pub chapters: Vec<Chapter>,
+    /// In alphabetical order.
+    pub terms: Vec<Entry<Term>>,
+    /// In file order.
+    pub references: Vec<Entry<Reference>>,
+    /// The data of tables and charts.
+    pub measured: Measured,
+    pub highlighter: Highlighter,
+    /// Makes MathML, so that readers need neither scripts nor the network.
+    pub formulas: LatexToMathML,
+}
+
+impl Site {
+    /// Reads everything from the library. Fails with the first [`Fault`] of the texts, or with an error in an embedded
+    /// part.
+    pub fn read(library: &Library) -> Result<Self> {
+        let mut terms: Vec<Entry<Term>> = library.entries(GLOSSARY)?;
+        terms.sort_by_key(|entry| entry.value.term.to_lowercase());
+        Ok(Site {
+            library: library.clone(),
+            chapters: Chapter::read_all(library)?,
+            terms,
+            references: library.entries(REFERENCES)?,
+            measured: Measured::read(library)?,
+            highlighter: Highlighter::new()?,
+            formulas: LatexToMathML::new(MathCoreConfig::default())
+                .map_err(|error| anyhow!("cannot convert formulas: {error:?}"))?,
+        })
+    }
+
+    /// The number and entry of a reference.
+    pub fn reference(&self, key: &str) -> Option<(usize, &Entry<Reference>)> {
+        (1..).zip(&self.references).find(|(_, entry)| entry.key == key)
+    }
+
+    /// Finds unused entries and dead links: faults that show only once all texts are read.
+    pub fn check(&self, uses: &Uses, html: &str) -> Result<(), Fault> {
+        if let Some(Entry { key, line, .. }) =
+            self.terms.iter().find(|entry| !uses.terms.contains_key(&entry.key))
+        {
+            let message =
+                format!("no chapter links the term {key:?}; link it as [text](glossary:{key}), or remove it");
+            return Err(Fault::new(GLOSSARY, *line, message));
+        }
+        match uses.targets.iter().find(|(anchor, ..)| !html.contains(&format!(" id=\"{anchor}\""))) {
+            Some((anchor, file, line)) => {
+                Err(Fault::new(file, *line, format!("nothing on the page has the anchor #{anchor}")))
+            }
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! Made-up texts as HTML, and errors in them.
+
+use crate::back_matter::{Area, Reference, Term};
+use crate::chapter::Chapter;
+use crate::library::{Entry, Fault, Library};
+use crate::site::Site;
+use crate::uses::Uses;
+use crate::{directive, page, prose};
+
+/// The page's site with two terms, two references and two chapters without text: 06-normals and 01-languages.
+fn site() -> Site {
+    let mut site = Site::read(&Library::of_checkout()).unwrap();
+    site.chapters.retain(|chapter| ["normals", "languages"].contains(&chapter.id.as_str()));
+    site.chapters.iter_mut().for_each(|chapter| chapter.body.clear());
+    let term = |key: &str, line, area| {
+        let value = Term { term: key.to_uppercase(), text: format!("A *{key}*."), area };
+        Entry { key: key.to_owned(), line, value }
+    };
+    site.terms = vec![term("lane", 1, Area::Parallelism), term("ray", 5, Area::Rendering)];
+    let reference = |key: &str, line| {
+        let (title, authors, note) = (format!("On {key}"), format!("{key} and others"), "Good.".to_owned());
+        let value = Reference { title, authors, year: 1984, url: format!("https://{key}.org"), note };
+        Entry { key: key.to_owned(), line, value }
+    };
+    site.references = vec![reference("first", 1), reference("second", 5)];
+    site
+}
+
+/// The HTML of a text in the chapter on normals.
+fn converted(site: &Site, text: &str, uses: &mut Uses) -> Result<String, Fault> {
+    let normals = site.chapters.iter().find(|chapter| chapter.id == "normals").unwrap();
+    let chapter = Chapter { body: text.to_owned(), lines_before: 4, ..normals.clone() };
+    prose::chapter(site, &chapter, directive::html, uses).map(|html| html.into_string())
+}
+
+/// The HTML of a single text.
+fn alone(site: &Site, text: &str) -> String {
+    converted(site, text, &mut Uses::default()).unwrap()
+}
+
+#[test]
+fn links_lead_to_what_they_name() {
+    let site = site();
+    for (target, html) in [
+        ("#there", "<a href=\"#there\">x</a>"),
+        ("https://a.org/b", "<a href=\"https://a.org/b\">x</a>"),
+        (
+            "page:normals",
+            "<a href=\"#normals\" title=\"Chapter 6: Surface Normals and Multiple Objects\">x</a>",
+        ),
+        (
+            "page:normals#6.1",
+            "<a href=\"#normals-61-shading-with-surface-normals\" title=\"Section 6.1 Shading with Surface Normals\">x</a>",
+        ),
+        ("glossary:lane", "<a id=\"use-lane\" class=\"term\" href=\"#term-lane\">x</a>"),
+        (
+            "live:metal-fuzzy?fuzz=1",
+            "<a class=\"try\" href=\"#figure-fuzz\" data-stage=\"metal-fuzzy\" data-set=\"fuzz=1\">x</a>",
+        ),
+        ("source:src/lib.rs", "x <span class=\"cite\">[<code class=\"path\">src/lib.rs</code>]</span>"),
+    ] {
+        assert_eq!(alone(&site, &format!("[x]({target})")), format!("<p>{html}</p>\n"));
+    }
+    let [first, second] = [("first", 1), ("second", 2)]
+        .map(|(key, n)| format!("<a href=\"#ref-{key}\" title=\"{key} and others: On {key}\">{n}</a>"));
+    let both = format!("<p><span class=\"cite\">[{first}, {second}]</span></p>\n");
+    assert_eq!(alone(&site, "[@second; @first]"), both);
+}
+
+#[test]
+fn links_are_recorded_with_lines() {
+    let (site, mut uses) = (site(), Uses::default());
+    let text = "[a](#there)\n\n[b](page:languages#two) [c](glossary:ray)\n\n[d](glossary:ray)";
+    let html = converted(&site, text, &mut uses).unwrap();
+    let targets: Vec<_> = uses.targets.iter().map(|(anchor, _, line)| (anchor.as_str(), *line)).collect();
+    assert_eq!(targets, [("there", 5), ("languages-two", 7)]);
+    assert_eq!(uses.terms["ray"], "Normals");
+    assert_eq!(html.matches("id=\"use-ray\"").count(), 1, "{html}");
+    let fault = converted(&site, "a\n\n[e](page:nowhere)", &mut uses).unwrap_err();
+    assert_eq!(fault.to_string(), "docs/companion/06-normals.md:7: the page has no chapter \"nowhere\"");
+}
+
+#[test]
+fn headings_code_and_formulas_render() {
+    let site = site();
+    for (text, html) in [
+        (
+            "## A Title's `code`",
+            "<h3 id=\"normals-a-titles-code\">A Title’s <code>code</code><a class=\"anchor\"",
+        ),
+        (
+            "## 6.1 Shading with Surface Normals",
+            "</span> Shading with Surface Normals <a class=\"book\" href=\"https://",
+        ),
+        ("```rust\nfn a() {}\n```", "<span class=\"hl-k\">fn</span>"),
+        ("```\nplain <b>\n```", "<code>plain &lt;b&gt;\n</code>"),
+        ("$$x$$", "<p class=\"wide\"><span class=\"formula\""),
+        ("So $$x$$", "<p>So <span class=\"formula\""),
+        ("$x$, y", "</math>,</span> y"),
+        ("$\\frac{1}{2}$", "<mfrac><mn>1</mn><mn>2</mn></mfrac>"),
+        ("| a |\n|---|\n| 1 |", "aria-label=\"Table\">\n<table>"),
+    ] {
+        let found = alone(&site, text);
+        assert!(found.contains(html), "{text}: {found}");
+    }
+    assert!(!alone(&site, "$x$-y").contains("class=\"nb\""));
+}
+
+#[test]
+fn directives_render() {
+    let site = Site::read(&Library::of_checkout()).unwrap();
+    let code =
+        alone(&site, "{{code\nshaders/lanes.wgsl: fn dot3\nsrc/render_cpu/lanes/vector.rs: pub fn dot\n}}");
+    assert!(code.contains("<figure class=\"code shown\" data-language=\"wgsl\">"), "{code}");
+    assert!(code.contains("<figure class=\"code\" data-language=\"rs\">"), "{code}");
+    assert!(code.contains("shaders/lanes.wgsl</code> <span class=\"lines\">lines "), "{code}");
+    let figure = alone(&site, "{{ figure antialiasing }}");
+    assert!(
+        figure.contains("id=\"figure-antialiasing\"") && figure.contains("src=\"figures/aliased.png\""),
+        "{figure}"
+    );
+    let cropped = alone(&site, "{{figure antialiasing crop 1 2 3 4\nA *caption*.\n}}");
+    assert!(
+        cropped.contains("aspect-ratio: 3 / 4\"") && cropped.contains("A <em>caption</em>."),
+        "{cropped}"
+    );
+    let diagram = alone(&site, "{{diagram lanes}}");
+    assert!(diagram.contains("aria-label=\"Diagram\"><svg") && diagram.contains("<figcaption>"), "{diagram}");
+}
+
+#[test]
+fn values_come_from_measurements() {
+    let site = site();
+    let rows = "speed/scenes/three-spheres/rows/C89, cc -O2, 1 thread";
+    let text = format!("{{{{value 3 {rows}/ratio_to_baseline}}}} {{{{value 2 12345 over 1}}}}");
+    assert_eq!(alone(&site, &text), "<p>1.00 12,000</p>\n");
+    let fault = converted(&site, "a\n\n{{value 2 speed/nothing}}", &mut Uses::default()).unwrap_err();
+    assert_eq!((fault.line, fault.message.contains("speed/nothing")), (7, true), "{fault}");
+}
+
+#[test]
+fn symbols_have_colours_in_formulas_and_code() {
+    let mut site = site();
+    let normals = site.chapters.iter_mut().find(|chapter| chapter.id == "normals").unwrap();
+    normals.facts.colours = [("h".to_owned(), 4)].into();
+    assert!(alone(&site, "$h$").contains("<mi class=\"q4\">h</mi>"));
+    let code = alone(&site, "{{code\nshaders/sphere.wgsl: fn chord_end\n}}");
+    assert!(code.contains("<span class=\"q4\">h</span>") && !code.contains("q4\">hit"), "{code}");
+}
+
+#[test]
+fn back_matter_lists_terms_and_works() {
+    let (site, mut uses) = (site(), Uses::default());
+    let text = "[x](glossary:ray)\n\n{{glossary}}\n\n{{references}}";
+    let html = converted(&site, text, &mut uses).unwrap();
+    for part in [
+        "<dt id=\"term-ray\">RAY</dt><dd><span id=\"def-ray\">A <em>ray</em>.</span> <a class=\"back\" href=\"#use-ray\"",
+        "<li id=\"ref-second\">second and others. <cite><a href=\"https://second.org\">On second</a></cite>, 1984. Good.</li>",
+    ] {
+        assert!(html.contains(part), "{part}: {html}");
+    }
+    let mut faulty = self::site();
+    faulty.terms[1].value.text = "[x](page:nowhere)".to_owned();
+    let fault = converted(&faulty, text, &mut Uses::default()).unwrap_err();
+    assert_eq!(fault.to_string(), "docs/companion/glossary.toml:5: the page has no chapter \"nowhere\"");
+}
+
+#[test]
+fn page_has_stages_and_no_dead_links() {
+    let mut site = site();
+    site.terms.clear();
+    let [languages, normals] = site.chapters.as_mut_slice() else { panic!("two chapters") };
+    languages.body = "{{figure red-sphere}}\n\n{{glossary}}\n\n{{references}}".to_owned();
+    normals.body = "{{figure sky}}\n\n[x](#normals)".to_owned();
+    let built = page::render(&site).unwrap();
+    assert!(built.html.contains("id=\"stage-sky\""));
+
+    site.chapters[1].body = "[x](#gone)".to_owned();
+    let fault = page::render(&site).unwrap_err().to_string();
+    assert!(fault.ends_with("nothing on the page has the anchor #gone"), "{fault}");
+}
+
+#[test]
+fn errors_in_texts_name_the_line() {
+    let site = Site::read(&Library::of_checkout()).unwrap();
+    for (text, message) in [
+        ("{{figure spehre}}", "there is no figure \"spehre\""),
+        ("{{code\nsrc/lib.rs: mod nothing\n}}", "no line begins with \"mod nothing\""),
+        ("{{code\nsrc/nothing.rs: fn a\n}}", "src/nothing.rs"),
+        ("{{mistakes sky\nno-such\n}}", "can have no mistake \"no-such\""),
+        ("{{value 2 speed/no-such}}", "speed/no-such is not a number"),
+        ("[x](live:no-such?fuzz=1)", "no figure shows the stage \"no-such\""),
+        ("{{figure sky\n[x](page:no-such)\n}}", "no chapter \"no-such\""),
+        ("{{table no-such}}", "no measurement \"no-such\""),
+        ("{{diagram no-such}}", "diagrams/no-such.svg"),
+        ("{{picture sky}}", "is not a directive"),
+        ("Text {{figure sky}}", "stands alone in its paragraph"),
+        ("[x](glossary:no-such)", "no term \"no-such\""),
+        ("## 6.99 Title", "the book has no section 6.99"),
+        ("[x](06-normals.md)", "is not a link of the page"),
+        ("[x](source:src/nothing.rs)", "no file \"src/nothing.rs\""),
+        ("[@no-such]", "no entry \"no-such\""),
+        ("## 6.1 Another Title", "is called \"Shading with Surface Normals\""),
+        ("### Title", "have two #"),
+        ("$\\nosuch$", "is not understood"),
+        ("```cobol\nx\n```", "\"cobol\" has no colours"),
+        ("<b>x</b>", "HTML and pictures are not allowed"),
+    ] {
+        let fault = converted(&site, &format!("a\n\n{text}"), &mut Uses::default()).unwrap_err();
+        assert_eq!((fault.line, fault.file.as_str()), (7, "docs/companion/06-normals.md"), "{text}: {fault}");
+        assert!(fault.message.contains(message), "{text}: {fault}");
+    }
+    for (text, message) in [
+        ("{{figure sky}}\n\n{{figure sky}}", "on the page already"),
+        ("## A\n\n## A", "another heading has the anchor #normals-a"),
+    ] {
+        let fault = converted(&site, text, &mut Uses::default()).unwrap_err();
+        assert!(fault.line == 7 && fault.message.contains(message), "{text}: {fault}");
+    }
+}
+
+#[test]
+fn errors_of_the_whole_page_name_file_and_line() {
+    let fault = |change: &dyn Fn(&mut Site)| {
+        let mut site = site();
+        site.terms.clear();
+        site.chapters[1].body = "[x](page:normals#no-such)".to_owned();
+        change(&mut site);
+        page::render(&site).unwrap_err().to_string()
+    };
+    assert!(fault(&|_| ()).ends_with(":4: nothing on the page has the anchor #normals-no-such"));
+    let unlinked = fault(&|site| site.terms = self::site().terms);
+    assert_eq!(
+        unlinked,
+        "docs/companion/glossary.toml:1: no chapter links the term \"lane\"; link it as [text](glossary:lane), or \
+         remove it"
+    );
+    let unknown = fault(&|site| site.chapters[1].facts.book = Some("99".to_owned()));
+    assert!(unknown.ends_with("06-normals.md:1: the book has no chapter \"99\""), "{unknown}");
+    let elsewhere = fault(&|site| site.chapters[1].body = "`no_such`\n\n{{code\nshaders/sphere.wgsl: fn chord\n}}".to_owned());
+    assert!(elsewhere.contains("`no_such` is not in the code"), "{elsewhere}");
+}

@@ -1,0 +1,107 @@
+//! A figure of the steps of a packet's lanes, laid out from recorded paths.
+
+use crate::uses::Uses;
+use crate::words::numbered;
+use weekender::backends::explain::{Activity, Timeline, timeline};
+use weekender::render_cpu::{Isa, PathRecorder};
+use weekender::stages::Stage;
+use anyhow::Result;
+use maud::{Markup, html};
+use std::fmt::Write;
+
+/// Lanes of the packet.
+const LANES: u32 = 8;
+
+/// Samples per lane.
+const SAMPLES: u64 = 12;
+
+/// Height of a lane and width of the figure, in drawing units.
+const SIZE: [f64; 2] = [10.0, 720.0];
+
+/// Gap between lanes.
+const GAP: f64 = 1.5;
+
+/// Meaning of the colours, with their CSS classes.
+const LEGEND: [(Activity, &str, &str); 5] = [
+    (Activity::Camera, "from-camera", "a ray from the camera"),
+    (Activity::Matte, "off-matte", "off a matte surface"),
+    (Activity::Metal, "off-metal", "off metal"),
+    (Activity::Glass, "off-glass", "off or through glass"),
+    (Activity::Waits, "waits", "waits"),
+];
+
+/// The figure for a stage: the packet in the middle of its picture, without and with refill.
+pub fn figure(id: &str, uses: &mut Uses) -> Result<Markup> {
+    let stage = Stage::find(id)?;
+    let job = stage.recipe().job()?;
+    // Every level records the same steps; the portable one exists on all machines.
+    let recorder = PathRecorder::new(&job, Isa::Portable, None);
+    let middle = [job.settings().width / 2, job.settings().height / 2];
+    // Two rows of pixels, from the middle of the picture to the right and downwards.
+    let pixel = |lane: u32| [middle[0] + lane % (LANES / 2), middle[1] + lane / (LANES / 2)];
+    let lane = |lane| (0..SAMPLES).map(|sample| recorder.record(pixel(lane), sample)).collect::<Vec<_>>();
+    let paths: Vec<_> = (0..LANES).map(lane).collect();
+    let [plain, refilled] = [false, true].map(|refill| timeline(job.scene(), &paths, refill));
+    let columns = plain.len().max(refilled.len()).max(1);
+    let summary = |timeline: &Timeline| {
+        format!("{} steps, {:.0} % of the lanes at work", timeline.len(), 100.0 * timeline.share_at_work())
+    };
+    Ok(html! {
+        figure .timeline id={ "timeline-" (id) } {
+            p .label { "Without refill, all lanes wait for the longest path: " (summary(&plain)) }
+            (drawing(&plain, columns))
+            p .label { "With refill, a lane starts its next path at once: " (summary(&refilled)) }
+            (drawing(&refilled, columns))
+            ul .legend aria-hidden="true" {
+                @for (_, class, meaning) in LEGEND { li { span .swatch .(class) {} (meaning) } }
+            }
+            (numbered(&html! {
+                "The " (LANES) " lanes of a packet in the middle of the stage " code { (stage.id) } ", each with " (SAMPLES)
+                " samples of its pixel: a row is a lane, a column a step. Laid out from the tracer’s own paths; only after \
+                 its last sample does a refilled lane wait here."
+            }, uses))
+        }
+    })
+}
+
+/// One timeline, `columns` steps wide.
+fn drawing(timeline: &Timeline, columns: usize) -> Markup {
+    let [row, width] = SIZE;
+    let column = width / columns as f64;
+    let height = row * timeline.lanes.len() as f64;
+    let path = |activity: Activity| {
+        let mut path = String::new();
+        for (lane, activities) in timeline.lanes.iter().enumerate() {
+            for step in (0..activities.len()).filter(|step| activities[*step] == activity) {
+                let (x, y) = (step as f64 * column, lane as f64 * row);
+                let (across, down) = (column - GAP.min(0.25 * column), row - GAP);
+                // Writing to a string cannot fail.
+                let _ = write!(path, "M{x:.1} {y:.1}h{across:.1}v{down:.1}h-{across:.1}z");
+            }
+        }
+        path
+    };
+    html! {
+        svg viewBox={ "0 0 " (width) " " (height) } aria-hidden="true" {
+            @for (activity, class, _) in LEGEND { path class=(class) d=(path(activity)) {} }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figure_states_gain_of_refill() {
+        let html = figure("three-spheres", &mut Uses::default()).unwrap().into_string();
+        let steps = |after: &str| -> f64 {
+            let rest = &html[html.find(after).unwrap() + after.len()..];
+            rest.trim_start_matches(": ").split(' ').next().unwrap().parse().unwrap()
+        };
+        let (plain, refilled) = (steps("the longest path"), steps("its next path at once"));
+        assert!(refilled >= 12.0 && refilled < 0.9 * plain, "{refilled} {plain}");
+        // Every lane starts with a camera ray.
+        assert_eq!(html.matches("M0.0 ").count(), 16);
+    }
+}
