@@ -36,8 +36,7 @@ fn is_no_word(c: char) -> bool {
 
 /// The excerpts of a block in its first language. Faulty ones are reported where they are shown.
 fn open_excerpts(library: &Library, wanted: &str) -> Vec<Excerpt> {
-    let mut excerpts: Vec<Excerpt> =
-        wanted.lines().filter_map(|line| library.excerpt(line).ok()).collect();
+    let mut excerpts: Vec<Excerpt> = wanted.lines().filter_map(|line| library.excerpt(line).ok()).collect();
     let first = excerpts.first().map(|excerpt| excerpt.language().to_owned());
     excerpts.retain(|excerpt| Some(excerpt.language()) == first.as_deref());
     excerpts

@@ -1,13 +1,13 @@
 //! The check inside the page: the program compiled for browsers, and what the page's script knows of the book.
 
-use weekender::numbers::heat::{HeatScale, colour_at};
-use weekender::stages::Stage;
-use weekender::system::files::replace_file;
 use anyhow::{Context, Result};
 use serde_json::json;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
+use weekender::numbers::heat::{HeatScale, colour_at};
+use weekender::stages::Stage;
+use weekender::system::files::replace_file;
 
 /// The script that holds the program.
 const FILE: &str = "check.js";

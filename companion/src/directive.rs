@@ -1,20 +1,20 @@
 //! Directives: paragraphs such as `{{figure sky}}` that become parts of the page.
 
+use crate::figure::Figure;
 use crate::library::FOLDER;
 use crate::lists;
 use crate::picture::Picture;
 use crate::pictures;
 use crate::prose::Place;
 use crate::site::Site;
+use crate::stills::has_few_pixels;
 use crate::timeline;
 use crate::uses::Uses;
 use crate::words::{numbered, typographic};
-use crate::figure::Figure;
-use crate::stills::has_few_pixels;
-use weekender::excerpt::Excerpt;
-use weekender::stages::Stage;
 use anyhow::{Context, Error, Result, bail};
 use maud::{Markup, PreEscaped, html};
+use weekender::excerpt::Excerpt;
+use weekender::stages::Stage;
 
 /// The directives and their arguments. More lines hold a caption, or what to quote.
 const KNOWN: &str = "figure ID, code, fold TITLE, unfold, mistakes STAGE, limits STAGE, samples STAGE, denoised STAGE SAMPLES, table NAME, chart NAME, diagram NAME, timeline STAGE, glossary, references";
@@ -97,8 +97,8 @@ pub fn panel(
 /// `crop` is a part to show enlarged: left, top, width and height in the stage's pixels.
 fn figure(id: &str, caption: Option<Markup>, crop: Option<[f64; 4]>, uses: &mut Uses) -> Result<Markup> {
     let figure = Figure::find(id);
-    let figure =
-        figure.with_context(|| format!("there is no figure {id:?}; companion/assets/figures.toml has them"))?;
+    let figure = figure
+        .with_context(|| format!("there is no figure {id:?}; companion/assets/figures.toml has them"))?;
     if !uses.anchors.insert(format!("figure-{id}")) {
         bail!("the figure {id:?} is on the page already; link it as [text](#figure-{id})");
     }

@@ -3,14 +3,14 @@
 use crate::library::{FOLDER, Fault, Library};
 use crate::uses::Uses;
 use crate::words::{code_words, numbered};
-use weekender::measure;
-use weekender::measure::report::{self, CurveSummary};
-use weekender::numbers::chart::{self, UNTITLED_TOP};
 use anyhow::{Context, Result, ensure};
 use maud::{Markup, PreEscaped, html};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
+use weekender::measure;
+use weekender::measure::report::{self, CurveSummary};
+use weekender::numbers::chart::{self, UNTITLED_TOP};
 
 /// Lists the stored measurements.
 const FILE: &str = "docs/companion/measured.toml";

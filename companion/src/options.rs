@@ -46,9 +46,8 @@ impl Options {
         let is_named = |stage: &Stage, id: &String| {
             stage.id == id || Figure::find(id).is_some_and(|figure| figure.shows(stage.id))
         };
-        let is_chosen = move |stage: &&Stage| {
-            self.only.is_empty() || self.only.iter().any(|id| is_named(stage, id))
-        };
+        let is_chosen =
+            move |stage: &&Stage| self.only.is_empty() || self.only.iter().any(|id| is_named(stage, id));
         Stage::ALL.iter().filter(is_chosen)
     }
 }

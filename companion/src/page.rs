@@ -5,18 +5,18 @@ use crate::chapter::Chapter;
 use crate::check;
 use crate::directive;
 use crate::library::Fault;
+use crate::live;
 use crate::picture::Picture;
 use crate::prose;
 use crate::site::Site;
 use crate::uses::Uses;
-use crate::live;
-use weekender::stages::{BOOK_URL, Stage, book_url, heading};
-use weekender::system::files::check_writable;
 use anyhow::{Result, ensure};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
+use weekender::stages::{BOOK_URL, Stage, book_url, heading};
+use weekender::system::files::check_writable;
 
 /// Styles and scripts.
 const ASSETS: &str = "companion/assets";

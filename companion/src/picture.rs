@@ -1,5 +1,12 @@
 //! A picture of the page's own: what to render, and how.
 
+use anyhow::{Context, Result};
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder};
+use maud::{Markup, html};
+use std::io::Write as _;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
 use weekender::comparison::check::{Hypothesis, Mistake, Studio};
 use weekender::denoise;
 use weekender::film::Checksum;
@@ -9,13 +16,6 @@ use weekender::job::render::Renderer;
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
 use weekender::stages::Stage;
 use weekender::system::files::replace_file;
-use anyhow::{Context, Result};
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder};
-use maud::{Markup, html};
-use std::io::Write as _;
-use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 pub const FOLDER: &str = "figures/more";
 

@@ -4,11 +4,11 @@
 use crate::picture::{NOISY_WIDTH, Picture, Tracer};
 use crate::uses::Uses;
 use crate::words::typographic;
+use anyhow::{Context, Result};
+use maud::{Markup, html};
 use weekender::comparison::check::{MISTAKES, Mistake};
 use weekender::progressive::describe::counted;
 use weekender::stages::Stage;
-use anyhow::{Context, Result};
-use maud::{Markup, html};
 
 /// Width and samples per pixel of a picture in a row. The plain tracer takes fewer samples.
 const SMALL: (u32, u64) = (180, 128);

@@ -1,12 +1,11 @@
 //! Markdown to HTML, with the page's own links, directives, formulas and colours.
 
 use crate::chapter::Chapter;
+use crate::figure::Figure;
 use crate::library::{Fault, line_of};
 use crate::site::Site;
 use crate::uses::Uses;
 use crate::words::{code_words, typographic};
-use crate::figure::Figure;
-use weekender::stages;
 use anyhow::{Context, Result, bail, ensure};
 use math_core::MathDisplay;
 use maud::{Markup, PreEscaped, html};
@@ -17,6 +16,7 @@ use std::fmt::Write as _;
 use std::iter::Peekable;
 use std::ops::Range;
 use std::vec::IntoIter;
+use weekender::stages;
 
 /// Makes the HTML of a directive, given without its braces. A directive may have Markdown in it.
 pub type Directive = fn(&Site, &Place<'_>, &str, &mut Uses) -> Result<Markup>;

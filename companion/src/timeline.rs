@@ -2,12 +2,12 @@
 
 use crate::uses::Uses;
 use crate::words::numbered;
-use weekender::backends::explain::{Activity, Timeline, timeline};
-use weekender::render_cpu::{Isa, PathRecorder};
-use weekender::stages::Stage;
 use anyhow::Result;
 use maud::{Markup, html};
 use std::fmt::Write;
+use weekender::backends::explain::{Activity, Timeline, timeline};
+use weekender::render_cpu::{Isa, PathRecorder};
+use weekender::stages::Stage;
 
 /// Lanes of the packet.
 const LANES: u32 = 8;

@@ -17,7 +17,6 @@ pub trait Ask {
 
     fn remembered_mut(&mut self) -> &mut Remembered;
 
-
     /// The messages on the screen, oldest first.
     fn messages(&self) -> Vec<String>;
 

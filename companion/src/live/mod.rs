@@ -6,6 +6,11 @@
 
 mod sliders;
 
+use anyhow::{Context, Result};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::{Map, Value, json};
+use sliders::sliders;
 use weekender::film::PixelSum;
 use weekender::job::render::{RenderJob, RenderSettings};
 use weekender::kernel::{GpuSuspendedPath, Tag, WORKGROUP_SIZE, records};
@@ -15,11 +20,6 @@ use weekender::render_gpu::{
     SOFTWARE_THREADS_IN_STEP,
 };
 use weekender::stages::Stage;
-use anyhow::{Context, Result};
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use serde_json::{Map, Value, json};
-use sliders::sliders;
 
 /// Target time of a dispatch in a browser, which can show a picture after each.
 const DISPATCH_MS: f64 = 20.0;
@@ -111,9 +111,9 @@ fn stage_data(stage: &Stage) -> Result<Value> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
     use weekender::scene::{Camera, Material, Scene};
     use weekender::stages::Setup;
-    use glam::DVec3;
 
     #[test]
     fn stage_data_matches_recipe() {

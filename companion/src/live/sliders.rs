@@ -1,9 +1,9 @@
 //! The numbers of a stage that a reader can change.
 
+use serde::Serialize;
 use weekender::job::render::RenderJob;
 use weekender::scene::{Material, Sphere};
 use weekender::stages::Shading;
-use serde::Serialize;
 
 /// A slider. The range of `samples` is that of its base-2 logarithm.
 #[derive(Clone, Debug, Serialize)]
@@ -116,11 +116,11 @@ fn index(job: &RenderJob, scene_index: &[u32]) -> Option<Slider> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
     use weekender::job::recipe::Recipe;
     use weekender::scene::Scene;
     use weekender::scene::builtin::{LeftSphere, metals, three_spheres};
     use weekender::stages::Stage;
-    use glam::DVec3;
 
     /// The sliders of a scene whose records list its spheres from last to first.
     fn sliders_of(scene: Scene, samples: u64) -> Vec<Slider> {

@@ -64,7 +64,9 @@ fn assert_valid(page: &Path) {
         .arg(page)
         .output();
     match output {
-        Err(error) => skip("BROWSER", &format!("the page's HTML was not checked: cannot start node: {error}")),
+        Err(error) => {
+            skip("BROWSER", &format!("the page's HTML was not checked: cannot start node: {error}"))
+        }
         Ok(output) => {
             let said = [output.stdout, output.stderr].concat();
             let said = String::from_utf8_lossy(&said);

@@ -81,7 +81,10 @@ fn write_still(directory: &Path, stage: &Stage) {
     let job = job_of(stage);
     let mut film = job.new_film();
     let samples = 0..stage.setup.samples_per_pixel.min(16);
-    CpuRenderer::new(CpuOptions::default()).unwrap().accumulate(&job, samples, &mut film, &AtomicBool::new(false)).unwrap();
+    CpuRenderer::new(CpuOptions::default())
+        .unwrap()
+        .accumulate(&job, samples, &mut film, &AtomicBool::new(false))
+        .unwrap();
     let bytes = film.to_rgb8(job.rules().transfer);
     let file = directory.join(format!("{}.png", stage.id));
     image::save_buffer(file, &bytes, film.width(), film.height(), image::ColorType::Rgb8).unwrap();

@@ -237,6 +237,8 @@ fn errors_of_the_whole_page_name_file_and_line() {
     );
     let unknown = fault(&|site| site.chapters[1].facts.book = Some("99".to_owned()));
     assert!(unknown.ends_with("06-normals.md:1: the book has no chapter \"99\""), "{unknown}");
-    let elsewhere = fault(&|site| site.chapters[1].body = "`no_such`\n\n{{code\nshaders/sphere.wgsl: fn chord\n}}".to_owned());
+    let elsewhere = fault(&|site| {
+        site.chapters[1].body = "`no_such`\n\n{{code\nshaders/sphere.wgsl: fn chord\n}}".to_owned()
+    });
     assert!(elsewhere.contains("`no_such` is not in the code"), "{elsewhere}");
 }

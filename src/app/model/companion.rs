@@ -1,8 +1,8 @@
 //! The companion: the page beside the program, and the address of a stage in it.
 
 use crate::stages::Stage;
-use std::path::{Path, PathBuf};
 use std::env;
+use std::path::{Path, PathBuf};
 
 /// Where the page is, from the directory of the program: in an archive, an installation, a bundle of macOS, a checkout.
 const PLACES: [&str; 4] =

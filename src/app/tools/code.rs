@@ -1,10 +1,10 @@
 //! The lines of the tracer that are new in a stage, in three languages, and what their words mean.
 
+use super::quoted::excerpts_between;
 use crate::app::commands::Snapshot;
 use crate::app::panels::right::scrolling;
 use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{About, hint, small, switch, tip};
-use super::quoted::excerpts_between;
 use crate::excerpt::Excerpt;
 use crate::stages::Stage;
 use eframe::egui::{Frame, Grid, Label, Margin, RichText, Sides, Ui};

@@ -10,8 +10,8 @@ mod sync;
 
 pub use lock::{FileLock, LockedError, lock_path};
 pub use paths::{
-    STANDARD, ShownPath, home_directory, identity, make_directory, pictures_directory,
-    state_directory, temporary_directory,
+    STANDARD, ShownPath, home_directory, identity, make_directory, pictures_directory, state_directory,
+    temporary_directory,
 };
 pub(crate) use read::read_at;
 pub use read::{InputError, open, read};
