@@ -48,8 +48,6 @@ fn run() -> Result<ExitCode, Failure> {
         Request::Frames(options) => batch::render_frames(*options),
         Request::Batch(options) => batch::run(*options),
         Request::Command(command) => match command {
-            Command::Plan(options) => batch::plan(&options),
-            Command::RenderPart(options) => batch::render_part(*options),
             Command::Merge(options) => merge::run(&options),
             Command::Info(options) => info::run(&options),
             Command::Diff(options) => diff::run(&options).map_err(Failure::Input),

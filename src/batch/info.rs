@@ -1,9 +1,8 @@
-//! `weekender info`: the metadata of a film, picture, scene file or plan.
+//! `weekender info`: the metadata of a film, picture or scene file.
 
 use crate::cli::InfoOptions;
 use crate::cli::terminal::{print, write_json};
 use crate::film::{CheckpointError, checkpoint, key};
-use crate::job::plan::Plan;
 use crate::job::recipe::{Recipe, file};
 use crate::job::saved::Saved;
 use crate::progressive::describe::{counted, seconds};
@@ -44,9 +43,6 @@ struct Info {
 
 impl Info {
     fn of(path: &Path) -> anyhow::Result<Info> {
-        if Plan::is_at(path) {
-            return Ok(Info::of_plan(&Plan::load(path)?));
-        }
         if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
             let recipe = file::load(path)?;
             let samples = json!({ "samples_per_pixel": recipe.samples_per_pixel });
@@ -90,21 +86,6 @@ impl Info {
             own.append(more);
         }
         self
-    }
-
-    fn of_plan(plan: &Plan) -> Info {
-        let manifest = &plan.manifest;
-        let [start, end] = manifest.samples;
-        Info::new("plan", &plan.path, &plan.recipe).with(json!({
-            "stage": manifest.stage,
-            "program": manifest.program,
-            "sample_version": manifest.sample_version,
-            "parts": manifest.parts.len(),
-            "command": manifest.command,
-            "samples_per_pixel": end - start,
-            "sample_ranges": format!("{start}..{end}"),
-            "halves": plan.job.settings().half_count(),
-        }))
     }
 
     /// Adds the metadata of a film and, if there is memory for its sums, its error.
@@ -153,7 +134,6 @@ impl Info {
         let samples = [
             text("samples_per_pixel").map(|samples| format!("{samples} per pixel")),
             text("sample_ranges").map(|ranges| format!("samples {ranges}")),
-            number("parts").map(|parts| counted(parts, "part")),
             text("sample_version").map(|version| format!("version {version}")),
             number("rejected_samples").map(|count| counted(count, "rejected sample")),
         ];

@@ -6,33 +6,33 @@ pub mod merge;
 mod files;
 mod frames;
 mod keeping;
-mod part;
 mod picture;
-mod planning;
 mod progress;
 mod studio;
 mod summary;
 
 pub use frames::{render_frames, write_frames};
-pub use part::render_part;
-pub use planning::plan;
 pub use studio::{Event, Studio};
 
 use crate::backends;
 use crate::cli::BatchOptions;
 use crate::cli::terminal::{self, print, print_beside};
+use crate::film::{CheckpointError, Film};
 use crate::job::recipe::{Recipe, file};
-use crate::job::saved::{self, SavedFilm};
+use crate::job::saved::{self, OpenError, SavedFilm};
+use crate::progressive::{EndReason, Phase, Status};
 use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
 use crate::system::console;
 use crate::system::failure::Failure;
 use crate::system::files::{STANDARD, ShownPath, check_replaceable, check_writable, write_text};
 use crate::system::interrupt::Interrupt;
+use anyhow::Context;
 use files::Files;
 use std::path::Path;
 use std::process::ExitCode;
-use summary::SCHEMA;
+use std::time::Duration;
+use summary::{SCHEMA, Summary};
 
 /// Renders and writes everything that the options ask for.
 ///
@@ -41,26 +41,66 @@ use summary::SCHEMA;
 /// are in its files; [`Failure::Run`] otherwise.
 pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     check_before(&options)?;
-    let files = Files::lock(&options)?;
-    let resumed = options.resume.as_ref().map(|path| saved::resume(path, &options.job));
-    render(&options, files, resumed.transpose().map_err(Failure::input)?)
-}
-
-/// Renders a picture, whose files are locked.
-fn render(options: &BatchOptions, mut files: Files, resumed: Option<SavedFilm>) -> Result<ExitCode, Failure> {
+    let mut files = Files::lock(&options)?;
+    let resumed = resumed(&options)?;
+    let has_stdout = options.writes(Path::new(STANDARD));
+    let beside = if has_stdout { Some(Path::new(STANDARD)) } else { options.json.as_deref() };
+    let report = |summary: &Summary| {
+        let printed = print_beside(beside, &summary.to_string());
+        printed.and(write_figures(&summary.json(), options.json.as_deref()))
+    };
+    if let Some(saved) = resumed.as_ref().filter(|saved| is_complete(&options, &saved.film)) {
+        return report(&summary_of_complete(&options, &saved.film))
+            .map(|()| ExitCode::SUCCESS)
+            .map_err(Failure::Run);
+    }
     let warnings = files.check(resumed.as_ref())?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let mut studio = Studio::open(&options.backend, &interrupt)?;
     if let Some(path) = &options.save_scene {
         write_text(path, &file::to_toml(&options.recipe)).map_err(Failure::run)?;
     }
-    let has_stdout = options.writes(Path::new(STANDARD));
-    let beside = if has_stdout { Some(Path::new(STANDARD)) } else { options.json.as_deref() };
     let film = resumed.map(|saved| saved.film);
-    let (summary, outcome) = picture::render(options, files, film, &warnings, &mut studio, &interrupt);
-    let printed = print_beside(beside, &summary.to_string());
-    let figures = printed.and(write_figures(&summary.json(), options.json.as_deref()));
-    ended(outcome.err(), figures, &interrupt)
+    let (summary, outcome) = picture::render(&options, files, film, &warnings, &mut studio, &interrupt);
+    ended(outcome.err(), report(&summary), &interrupt)
+}
+
+/// The film to continue. A damaged one of `--continue` is renamed, and rendered again.
+fn resumed(options: &BatchOptions) -> Result<Option<SavedFilm>, Failure> {
+    let Some(path) = &options.resume else { return Ok(None) };
+    match saved::resume(path, &options.job) {
+        Err(OpenError::Film(damaged @ CheckpointError::Damaged { .. }))
+            if options.checkpoint.as_ref() == Some(path) =>
+        {
+            let mut aside = path.as_os_str().to_owned();
+            aside.push(".damaged");
+            let context = || format!("cannot rename {} to {}", path.shown(), aside.shown());
+            std::fs::rename(path, &aside).with_context(context).map_err(Failure::Input)?;
+            let aside = aside.shown();
+            console::note(&format!("warning: {damaged}; it is now {aside}, and is rendered again"));
+            Ok(None)
+        }
+        found => found.map(Some).map_err(Failure::input),
+    }
+}
+
+/// Whether the continued film has all samples and is all that would be written.
+fn is_complete(options: &BatchOptions, film: &Film) -> bool {
+    options.save_scene.is_none()
+        && options.files().all(|file| options.resume.as_ref() == Some(file))
+        && film.samples().first_gap(options.plan.range(), u64::MAX).is_none()
+}
+
+fn summary_of_complete<'a>(render: &'a BatchOptions, film: &Film) -> Summary<'a> {
+    let status = Status {
+        phase: Phase::Done(EndReason::Samples),
+        samples_per_pixel: film.sample_count(),
+        rejected_samples: film.rejected(),
+        error: film.error(),
+        ..Status::default()
+    };
+    let (samples, files) = (Some(film.samples().to_string()), render.files().cloned().collect());
+    Summary { render, samples, status, denoised: None, files, writing: Duration::ZERO }
 }
 
 fn write_figures(figures: &serde_json::Value, target: Option<&Path>) -> anyhow::Result<()> {

@@ -1,7 +1,8 @@
 //! Commands whose flags are their options: merge, info, check, compare and stress.
 
-use super::values::{Auto, ProgressChoice, parse_levels};
+use super::values::{Auto, ProgressChoice, parse_levels, whole};
 use crate::job::output::Encoding;
+use crate::job::render::SAMPLE_LIMIT;
 use crate::render_cpu::Isa;
 use crate::stages::{Stage, Transfer};
 use clap::builder::PossibleValue;
@@ -11,22 +12,22 @@ use std::path::PathBuf;
 /// Options of `weekender merge`.
 #[derive(Clone, Debug, Args)]
 pub struct MergeOptions {
-    /// Film files (.exr), as --checkpoint, --out and merge write them, or one plan: its directory, or its plan.json
-    #[arg(required = true, num_args = 1.., value_name = "FILM|PLAN")]
+    /// Film files (.exr), as --checkpoint, --out and merge write them
+    #[arg(required = true, num_args = 1.., value_name = "FILM")]
     pub films: Vec<PathBuf>,
     /// Where the result is written: .exr for the film, .png or .ppm for the picture; may be repeated
-    #[arg(long, value_name = "FILE", required_unless_present = "check")]
+    #[arg(long, value_name = "FILE", required_unless_present = "samples")]
     pub out: Vec<PathBuf>,
-    /// Write nothing; read everything, list what is missing, damaged or foreign, and print the commands that render
-    /// what is missing
-    #[arg(long, conflicts_with = "out")]
-    pub check: bool,
+    /// Samples per pixel that the picture should have, 1 to 4294967296: list which are missing, which films are damaged
+    /// or do not fit, and the commands that render what is missing
+    #[arg(long, value_name = "COUNT", value_parser = whole::<u64>(1..=SAMPLE_LIMIT))]
+    pub samples: Option<u64>,
 }
 
 /// Options of `weekender info`.
 #[derive(Clone, Debug, Args)]
 pub struct InfoOptions {
-    /// A film, picture, scene file or plan
+    /// A film, picture or scene file
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     /// Print it as JSON

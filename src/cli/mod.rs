@@ -8,7 +8,6 @@ mod bench;
 mod diff;
 mod direct;
 mod paths;
-mod plan;
 mod render;
 mod report;
 mod sources;
@@ -19,7 +18,6 @@ pub use bench::{BenchOptions, BenchScene};
 pub use diff::DiffOptions;
 pub use direct::{CheckOptions, CompareOptions, InfoOptions, MergeOptions, StressOptions};
 pub use paths::{check_outputs, check_paths};
-pub use plan::{PartOptions, PlanOptions};
 pub use render::{BatchOptions, WindowOptions};
 pub use report::ReportOptions;
 pub use values::{DrawWith, ProgressChoice};
@@ -74,22 +72,12 @@ pub enum Command {
     /// Rows take turns, after an untimed warm-up. Medians are shown with minimum and maximum. Reading, preparing and
     /// writing are not timed. The C program is compiled with the compiler that CC names, or with cc.
     Bench(Box<BenchOptions>),
-    /// Divide the samples of a picture into parts for many machines, and make the commands that render them
+    /// Merge films of the same picture that hold different samples
     ///
-    /// Writes plan.json and the scene into the directory --out. A part's command can be repeated at any time: it continues
-    /// from the part's last checkpoint, and ends at once if the part is complete.
-    Plan(Box<PlanOptions>),
-    /// Render a part of a plan, or continue it
-    ///
-    /// The part's film is its own checkpoint. The exit code is 0 if the part is complete, 143 after SIGTERM (the
-    /// checkpoint is written; run it again), 130 after Ctrl-C and 2 if the part cannot be rendered.
-    RenderPart(Box<PartOptions>),
-    /// Merge films of the same picture that hold different samples, or the parts of a plan
-    ///
-    /// Given a plan, it adds up whatever exists, checkpoints of unfinished parts included. The exit code is 0 if nothing is
-    /// missing, 1 if a part is missing, unfinished or damaged, and 2 if nothing could be merged.
-    Merge(Box<MergeOptions>),
-    /// Show the metadata of a film, picture, scene file or plan
+    /// With --samples, films that are damaged or do not fit are left out, and what is missing is listed with the commands
+    /// that render it; the exit code is then 1. It is 0 if nothing is missing, and 2 if nothing could be merged.
+    Merge(MergeOptions),
+    /// Show the metadata of a film, picture or scene file
     Info(InfoOptions),
     /// Show a path as two backends trace it, side by side, and where the two diverge
     ///
@@ -140,19 +128,15 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
         return Ok(Request::Version);
     }
     // The flags of a subcommand alone: reading `--device auto` asks the system for its GPUs.
-    let Some((_, own)) = matches.subcommand() else {
+    if matches.subcommand().is_none() {
         let flags = render::RenderFlags::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
         let request = match flags.animation.is_given() && !flags.list {
             true => animation::frames(flags).map(|options| Request::Frames(Box::new(options))),
             false => render::request(flags, &matches),
         };
         return request.map_err(Failure::Input);
-    };
-    let mut command = Command::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
-    if let Command::Plan(options) = &mut command {
-        options.flags = words(own, &[&backend::FLAGS[..], &["every"]].concat());
     }
-    Ok(Request::Command(command))
+    Ok(Request::Command(Command::from_arg_matches(&matches).map_err(Failure::CommandLine)?))
 }
 
 /// The arguments as clap reads them. A file in place of a command, as file managers pass it, opens in the window.
@@ -188,13 +172,6 @@ fn hinted(mut error: clap::Error) -> clap::Error {
 
 fn is_given(matches: &ArgMatches, flag: &str) -> bool {
     matches.value_source(flag) == Some(ValueSource::CommandLine)
-}
-
-/// The arguments that repeat those of `flags` that were given.
-fn words(matches: &ArgMatches, flags: &[&str]) -> Vec<String> {
-    let value = |flag: &str| matches.get_raw(flag).into_iter().flatten().next();
-    let given = flags.iter().filter(|flag| is_given(matches, flag));
-    given.filter_map(|flag| Some(format!("--{flag}={}", value(flag)?.to_string_lossy()))).collect()
 }
 
 /// How commands call this program: by name if the shell found it, otherwise with its directory.

@@ -100,7 +100,8 @@ impl AnimationFlags {
 #[command(next_help_heading = "Files")]
 pub(super) struct FileFlags {
     /// The picture: .png, .ppm, .exr (linear film) or .pfm (linear), or - for standard output; with --frames, a
-    /// directory or a pattern such as turn-####.png; may be repeated [default: SCENE.png]
+    /// directory or a pattern such as turn-####.png; may be repeated [default: SCENE.png, but none for a --sample-range
+    /// with a --checkpoint]
     #[arg(long, value_name = "FILE", requires = "batch")]
     pub out: Vec<PathBuf>,
     /// The format of --out, if its extension does not tell
@@ -115,7 +116,8 @@ pub(super) struct FileFlags {
     #[arg(long, value_name = "FILE.exr", value_parser = file_ending(".exr"), requires = "batch",
           conflicts_with = "AnimationFlags")]
     checkpoint: Option<PathBuf>,
-    /// Continue the film of --checkpoint if it exists, so that one command starts a render and continues it
+    /// Continue the film of --checkpoint if it exists, so that one command starts a render and continues it; a damaged
+    /// film is renamed to FILE.exr.damaged, and rendered again
     #[arg(long = "continue", requires = "checkpoint", conflicts_with = "resume")]
     go_on: bool,
     /// Interval at which --checkpoint is written, the most that a power cut can cost: 0.1s to 30d, such as 30s, 5m or
@@ -268,7 +270,7 @@ fn window(flags: RenderFlags, opened: Option<&Path>, matches: &ArgMatches) -> Re
     let unchanged = chosen.recipe.clone();
     let (ChosenRecipe { recipe, stage }, job) = sources::changed(chosen, picture, samples)?;
     if let Some(film) = &files.resume {
-        saved::check_resume(film, &job)?;
+        saved::open(film)?.check_same(&job)?;
     }
     let has_end = samples.samples.is_some() || stop.time_limit.is_some() || stop.noise_target.is_some();
     Ok(WindowOptions {
@@ -298,7 +300,8 @@ fn batch(flags: RenderFlags) -> Result<BatchOptions> {
     let (ChosenRecipe { recipe, stage }, job) = sources::picture(picture, samples, files.resume.as_deref())?;
     let name = stage.map_or(recipe.name.as_str(), |stage| stage.id);
     let mut out = files.out.clone();
-    if out.is_empty() {
+    let is_part = samples.sample_range.is_some() && files.checkpoint.is_some();
+    if out.is_empty() && !is_part {
         out.push(format!("{}.png", plain_name(name)).into());
     }
     check_paths(&flags, &out)?;

@@ -3,7 +3,7 @@
 use super::values::{number, parse_size, parse_vector, range, whole};
 use crate::job::recipe::{Recipe, file};
 use crate::job::render::{DEPTH_LIMIT, RenderJob, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
-use crate::job::saved::Saved;
+use crate::job::saved::open;
 use crate::scene::VFOV_LIMITS_DEGREES;
 use crate::stages::Stage;
 use crate::system::files::STANDARD;
@@ -100,7 +100,7 @@ impl PictureFlags {
     }
 }
 
-/// The samples of a picture or of a plan.
+/// The samples of a picture.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Samples")]
 pub(super) struct SampleFlags {
@@ -155,8 +155,8 @@ pub(super) fn find(flags: &PictureFlags, saved: Option<&Path>) -> Result<ChosenR
         }
         (None, Some(name), _) => Ok(ChosenRecipe { recipe: scene(name)?, stage: None }),
         (None, None, Some(path)) => {
-            let saved = Saved::describe(path)?;
-            Ok(ChosenRecipe { recipe: saved.recipe()?, stage: saved.stage() })
+            let saved = open(path)?;
+            Ok(ChosenRecipe { stage: saved.stage(), recipe: saved.recipe })
         }
         (None, None, None) => Ok(ChosenRecipe { recipe: scene(DEFAULT_SCENE)?, stage: None }),
     }

@@ -1,10 +1,10 @@
 //! A picture in linear radiance, from a film, any program's file, or a backend.
 
 use crate::film::checkpoint::DENOISED_LAYER;
-use crate::film::{Film, key};
+use crate::film::{CheckpointError, Film, key};
 use crate::job::output::{Encoding, Linear, Values, read_picture};
 use crate::job::recipe::Recipe;
-use crate::job::saved::{OpenError, Saved};
+use crate::job::saved::{Kind, OpenError, Saved, open};
 use crate::stages::Transfer;
 use crate::system::memory;
 use anyhow::Result;
@@ -41,21 +41,23 @@ impl Picture {
             }
             _ => (path, None),
         };
-        // A film's layers are pictures.
-        let saved = match if layer.is_some() { Saved::describe(path) } else { Saved::read(path) } {
+        let saved = match open(path) {
             Ok(saved) => Some(saved),
-            // Most pictures have no description. Reading the picture below reports its own errors.
-            Err(OpenError::Picture(_)) => None,
+            // Most pictures have no description, and the pixels can be compared without one. Reading the picture below
+            // reports its own errors.
+            Err(OpenError::Picture(_) | OpenError::Recipe(_) | OpenError::Film(CheckpointError::Resaved { .. })) => {
+                None
+            }
             Err(error) => return Err(error.into()),
         };
-        // Pixels can be compared even if the recipe is invalid.
-        let recipe = saved.as_ref().and_then(|saved| saved.recipe().ok());
-        let described = |key| Some(saved.as_ref()?.description.get(key)?.to_owned());
+        let described = |key| Some(saved.as_ref()?.kind.text(key)?.to_owned());
         let samples = described(key::SAMPLES).map_or_else(String::new, |count| format!(", {count} samples"));
         let denoised = described(key::DENOISED).or_else(|| (layer == Some(DENOISED_LAYER)).then(String::new));
-        if let Some(film) = saved.and_then(|saved| saved.film) {
-            return Picture::of_rendered(name, recipe.as_ref(), film.into());
+        // A film's layers are pictures.
+        if let Some(saved @ Saved { kind: Kind::Film(_), .. }) = saved.as_ref().filter(|_| layer.is_none()) {
+            return Picture::of_rendered(name, Some(&saved.recipe), saved.film()?.film.into());
         }
+        let recipe = saved.map(|saved| saved.recipe);
         let read = read_picture(path, layer)?;
         let described = recipe.as_ref().map(|recipe| Encoding::Book(recipe.rules.transfer));
         let is_stated = described.or(encoding).is_none() && read.stated.is_some();

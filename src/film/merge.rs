@@ -1,6 +1,6 @@
 //! Merges films from several files.
 
-use super::{Description, Film, FilmFile, FilmHead, SampleRanges, checkpoint, key};
+use super::{CheckpointError, Description, Film, FilmFile, SampleRanges, checkpoint, key};
 use crate::system::files::ShownPath;
 use anyhow::{Context, Result, bail};
 use std::ops::Range;
@@ -10,10 +10,9 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug)]
 pub struct FilmSum {
     film: Film,
+    /// The first film's.
     description: Description,
-    /// The file or plan that the others must match.
-    first: PathBuf,
-    /// The files with their samples.
+    /// The files with their samples. The others must match the first.
     parts: Vec<(PathBuf, SampleRanges)>,
     backends: Vec<String>,
     /// Seconds of tracing, if all files have them.
@@ -21,25 +20,23 @@ pub struct FilmSum {
 }
 
 impl FilmSum {
-    /// An empty sum of films with this many pixels and halves. `recipe` and messages come from `first`.
+    /// Reads the first film.
     ///
     /// # Errors
-    /// If there is not enough memory.
-    pub fn new(
-        width: u32,
-        height: u32,
-        halves: usize,
-        description: Description,
-        first: &Path,
-    ) -> Result<Self> {
-        let film = Film::try_new(width, height, halves)
-            .with_context(|| format!("{} cannot be merged", first.shown()))?;
-        let (first, parts, backends) = (first.to_owned(), Vec::new(), Vec::new());
-        Ok(FilmSum { film, description, first, parts, backends, seconds: Some(0.0) })
+    /// [`CheckpointError`].
+    pub fn read(path: &Path) -> Result<Self, CheckpointError> {
+        let FilmFile { film, description } = checkpoint::load(path)?;
+        Ok(FilmSum {
+            parts: vec![(path.to_owned(), film.samples().clone())],
+            backends: description.get(key::BACKEND).map(str::to_owned).into_iter().collect(),
+            seconds: seconds(&description),
+            film,
+            description,
+        })
     }
 
-    /// Adds the film of a file and returns its samples. `same_job` gets the recipes of the sum and of the file, and
-    /// returns what differs if their jobs do.
+    /// Adds the film of another file. `same_job` gets the recipes of the sum and of the file, and returns what differs
+    /// if their jobs do.
     ///
     /// # Errors
     /// Which files do not match, and why; the sum is then unchanged.
@@ -47,14 +44,11 @@ impl FilmSum {
         &mut self,
         path: &Path,
         same_job: impl Fn(&str, &str) -> Result<(), String>,
-    ) -> Result<SampleRanges> {
+    ) -> Result<()> {
         let FilmFile { film, description } = checkpoint::load(path)?;
-        let (first, other) = (self.first.shown(), path.shown());
+        let (first, other) = (self.parts[0].0.shown(), path.shown());
         if let Err(difference) = same_job(self.description.recipe(), description.recipe()) {
-            bail!(
-                "{other} is the film of another picture than {first}: {difference}; leave it out, or move it out of the \
-                 plan's directory"
-            );
+            bail!("{other} is the film of another picture than {first}: {difference}; leave it out");
         }
         for (path, samples) in &self.parts {
             if let Some(Range { start, end }) = samples.first_common(film.samples()) {
@@ -69,9 +63,13 @@ impl FilmSum {
         self.parts.push((path.to_owned(), film.samples().clone()));
         let backend = description.get(key::BACKEND).map(str::to_owned);
         self.backends.extend(backend.filter(|backend| !self.backends.contains(backend)));
-        let seconds = description.get(key::SECONDS).and_then(|seconds| seconds.parse::<f64>().ok());
-        self.seconds = self.seconds.zip(seconds).map(|(sum, seconds)| sum + seconds);
-        Ok(film.samples().clone())
+        self.seconds = self.seconds.zip(seconds(&description)).map(|(sum, seconds)| sum + seconds);
+        Ok(())
+    }
+
+    /// The files with their samples, in the order in which they were added.
+    pub fn parts(&self) -> &[(PathBuf, SampleRanges)] {
+        &self.parts
     }
 
     pub fn film(&self) -> &Film {
@@ -93,23 +91,6 @@ impl FilmSum {
     }
 }
 
-/// Merges the films of several files. Besides the sum, this needs memory for one of them.
-///
-/// `same_job` gets the recipes of the first file and of another one, and returns what differs if their jobs differ.
-/// The description is that of the first file, see [`FilmSum::description`].
-///
-/// # Errors
-/// Which files do not match, and why.
-pub fn merge_files<P: AsRef<Path>>(
-    paths: &[P],
-    same_job: impl Fn(&str, &str) -> Result<(), String>,
-) -> Result<FilmFile> {
-    let first = paths.first().context("no film was named; name the film files to merge")?;
-    let FilmHead { width, height, halves, description, .. } = checkpoint::read_head(first.as_ref())?;
-    let mut sum = FilmSum::new(width, height, halves, description, first.as_ref())?;
-    for path in paths {
-        sum.add(path.as_ref(), &same_job)?;
-    }
-    let description = sum.description();
-    Ok(FilmFile { film: sum.film, description })
+fn seconds(description: &Description) -> Option<f64> {
+    description.get(key::SECONDS)?.parse().ok()
 }

@@ -26,7 +26,7 @@ pub use fixed_point::{
 };
 pub use histogram::Histogram;
 pub use locked::LockedFilm;
-pub use merge::{FilmSum, merge_files};
+pub use merge::FilmSum;
 pub use ranges::SampleRanges;
 pub use resolve::to_byte;
 

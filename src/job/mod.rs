@@ -1,7 +1,6 @@
-//! From a recipe to a checked job, and the files in between: scene files, pictures, saved films, plans.
+//! From a recipe to a checked job, and the files in between: scene files, pictures, saved films.
 
 pub mod output;
-pub mod plan;
 pub mod recipe;
 pub mod render;
 pub mod saved;

@@ -8,7 +8,7 @@ use crate::app::model::{Document, Model};
 use crate::app::toolkit::Answers;
 use crate::app::tracing::Tracing;
 use crate::film::{Description, Film, checkpoint};
-use crate::job::saved::{self, Saved};
+use crate::job::saved;
 use crate::progressive::describe::counted;
 use crate::system::console;
 use crate::system::files::{lock_path, write_text};
@@ -35,14 +35,13 @@ const LEFT: &str = "recovered";
 
 /// The picture of a film, and how many samples per pixel it has.
 pub fn picture_of(path: &Path) -> Option<(Document, u64)> {
-    let saved = Saved::describe(path).ok()?;
-    Some((Document::of_film(&saved.recipe().ok()?, saved.stage()), saved.samples()?))
+    let saved = saved::open(path).ok()?;
+    Some((Document::of_film(&saved.recipe, saved.stage()), saved.samples()?))
 }
 
 /// The document at the size of the film at `path`, if the film is one of this document.
 fn with_film(document: &Document, path: &Path) -> Option<Document> {
-    let saved = Saved::describe(path).ok()?;
-    let theirs = saved.recipe().ok()?;
+    let theirs = saved::open(path).ok()?.recipe;
     let mut document = document.clone();
     if !document.has_own_size {
         document.set_size([theirs.settings.width, theirs.settings.height]);
@@ -174,7 +173,7 @@ impl Autosave {
             }
             let with_film = steps.last().and_then(|document| with_film(document, &film));
             let is_long = || {
-                let seconds = Saved::describe(&film).ok().and_then(|saved| saved.seconds());
+                let seconds = saved::open(&film).ok().and_then(|saved| saved.seconds());
                 seconds.is_some_and(|seconds| seconds >= WORTH_SECONDS)
             };
             if !(goes_on && with_film.is_some()) && (*has_ended_early || is_long()) {

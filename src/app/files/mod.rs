@@ -17,7 +17,7 @@ use crate::film::Film;
 use crate::job::output::{Description, OutputFormat, is_named_picture, key, write_image};
 use crate::job::recipe::file;
 use crate::job::render::RenderJob;
-use crate::job::saved::{OpenError, Opened, SavedFilm, open, resume};
+use crate::job::saved::{Kind, OpenError, Saved, SavedFilm, open, resume};
 use crate::progressive::describe::{counted, describe};
 use crate::progressive::{Phase, Status};
 use crate::system::console;
@@ -39,6 +39,13 @@ pub struct Resumed {
     pub begun: Document,
     /// The film that was read.
     pub film: SavedFilm,
+}
+
+/// A file that the window shows.
+pub struct Opened {
+    pub saved: Saved,
+    /// The film, if the file has one.
+    pub film: Option<SavedFilm>,
 }
 
 /// Something that was written or made.
@@ -254,7 +261,12 @@ impl Files {
 
     /// Reads a scene file, picture or film.
     pub fn open(&mut self, context: &Context, path: PathBuf) {
-        let work = move || match open(&path) {
+        let opened = |saved: Saved| {
+            saved.job()?;
+            let film = matches!(saved.kind, Kind::Film(_)).then(|| saved.film()).transpose()?;
+            Ok(Opened { saved, film })
+        };
+        let work = move || match open(&path).and_then(opened) {
             Err(_) if !path.exists() => {
                 let [name, folder] = [path.file_name(), path.parent().map(Path::as_os_str)]
                     .map(|part| part.unwrap_or_default().display().to_string());

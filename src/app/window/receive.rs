@@ -2,9 +2,9 @@
 
 use super::Window;
 use crate::app::commands::Command;
-use crate::app::files::{Made, Resumed, name_of};
+use crate::app::files::{Made, Opened, Resumed, name_of};
 use crate::app::model::{Dock, Document, Kept, Origin, Partner, Source};
-use crate::job::saved::{Opened, Saved};
+use crate::job::saved::Kind;
 use crate::progressive::Stop;
 use crate::progressive::describe::counted;
 use eframe::egui::Context;
@@ -76,16 +76,17 @@ impl Window {
         outcome.ok()
     }
 
-    fn show_opened(&mut self, Opened { path, recipe, saved, .. }: Opened) {
-        let is_left = self.autosave.is_answered(&path);
-        let mut document = match &saved {
-            None => Document::new(Origin::new(recipe, Source::File(path.clone()))),
-            Some(saved) => Document::of_film(&recipe, saved.stage()),
+    fn show_opened(&mut self, Opened { saved, film }: Opened) {
+        let is_left = self.autosave.is_answered(&saved.path);
+        let mut document = match saved.kind {
+            Kind::Scene => Document::new(Origin::new(saved.recipe.clone(), Source::File(saved.path.clone()))),
+            _ => Document::of_film(&saved.recipe, saved.stage()),
         };
         (document.has_own_size, document.is_from_file) = (true, true);
-        if let Some(samples) = saved.as_ref().filter(|saved| saved.film.is_none()).and_then(Saved::samples) {
+        if let Some(samples) = saved.samples().filter(|_| film.is_none()) {
             document.stop = Stop::at_samples(samples);
         }
+        let path = saved.path;
         self.show_document(document);
         self.shell.toasts.good(if is_left {
             format!("Resumed {}", self.document().place())
@@ -93,7 +94,7 @@ impl Window {
             self.model.remembered.note_recent(&path);
             format!("Opened {}; its size and samples hold for this picture only", name_of(&path))
         });
-        if let Some(film) = saved.and_then(Saved::into_film) {
+        if let Some(film) = film {
             self.adopt(film.film, film.seconds);
         }
     }
