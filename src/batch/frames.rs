@@ -3,16 +3,16 @@
 
 use super::progress::display;
 use super::studio::{Event, Studio};
-use super::{ended, write_figures};
+use super::{Line, ended, report};
 use crate::cli::FramesOptions;
-use crate::cli::terminal::{Display, print_beside};
+use crate::cli::terminal::Display;
 use crate::film::key;
 use crate::job::output::write_image;
 use crate::job::recipe::Recipe;
 use crate::job::saved::is_whole_frame;
 use crate::progressive::Phase;
 use crate::progressive::describe::{SOFTWARE, counted, describe, seconds};
-use crate::system::console::printable;
+use crate::system::console;
 use crate::system::failure::Failure;
 use crate::system::files::{ShownPath, check_writable, make_directory};
 use crate::system::interrupt::Interrupt;
@@ -37,8 +37,10 @@ pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
         outcome => outcome.err(),
     };
     run.display.clear();
-    let printed = print_beside(options.json.as_deref(), &format!("{}\n", run.text()));
-    let figures = printed.and(write_figures(&run.json(), options.json.as_deref()));
+    let figures = report(&run.json(), &LINES, options.json.as_deref(), None);
+    if run.done() < options.frames.len() as u32 {
+        console::note("run the same command again to continue");
+    }
     ended(failure, figures, &interrupt)
 }
 
@@ -64,6 +66,13 @@ fn check(options: &FramesOptions) -> Result<(), Failure> {
     }
     options.job.check_memory(1).map_err(Failure::input)
 }
+
+const LINES: [Line; 4] = [
+    ("scene", &["{scene}, {width}x{height}, {samples_per_pixel} samples per pixel"]),
+    ("frames", &["{frames_done} of {frames} done: {rendered} rendered, {kept} already there"]),
+    ("time", &["{total_seconds}, {rendering_seconds} of it for the frames rendered"]),
+    ("files", &["{first_file} to {last_file}"]),
+];
 
 /// An animation in progress.
 struct Run<'a> {
@@ -204,36 +213,6 @@ impl<'a> Run<'a> {
             "last_file": last.map(|path| path.to_string_lossy().into_owned()),
             "warnings": self.warnings,
         })
-    }
-
-    fn text(&self) -> String {
-        let FramesOptions { recipe, frames, names, .. } = self.options;
-        let (name, settings) = (printable(&recipe.name), &recipe.settings);
-        let samples = counted(recipe.samples_per_pixel, "sample");
-        let each = self.rendering.as_secs_f64() / f64::from(self.rendered);
-        let each = match self.rendered {
-            0 => String::new(),
-            _ => format!(" ({each:.3} s for each frame rendered)"),
-        };
-        let files = match self.files() {
-            Some([first, last]) if self.done() == frames.len() as u32 => {
-                format!("{} to {}", first.shown(), last.shown())
-            }
-            _ => format!("in {}; run the same command again to continue", names.directory.shown()),
-        };
-        format!(
-            "scene    {name}, {}x{}, {samples} per pixel\n\
-             frames   {} of {} done: {} rendered, {} already there\n\
-             time     {}{each}\n\
-             files    {files}\n",
-            settings.width,
-            settings.height,
-            self.done(),
-            frames.len(),
-            self.rendered,
-            self.kept,
-            seconds(self.begin.elapsed().as_secs_f64()),
-        )
     }
 }
 

@@ -1,21 +1,37 @@
 //! `weekender info`: the metadata of a film, picture or scene file.
 
+use super::{Line, SCHEMA, aligned, lines};
 use crate::cli::InfoOptions;
-use crate::cli::terminal::{print, write_json};
-use crate::film::{CheckpointError, checkpoint, key};
-use crate::job::recipe::{Recipe, file};
-use crate::job::saved::Saved;
-use crate::progressive::describe::{counted, seconds};
-use crate::system::console::printable;
+use crate::cli::terminal::{print, write_figures};
+use crate::film::{CheckpointError, FilmHead, checkpoint, key};
+use crate::job::saved::{self, Kind};
 use crate::system::failure::Failure;
-use crate::system::files::{STANDARD, ShownPath};
-use crate::system::memory;
+use crate::system::files::STANDARD;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Version of the JSON. Incremented when a key is removed or changes meaning.
-const SCHEMA: u32 = 1;
+const LINES: [Line; 11] = [
+    ("file", &["{kind} {file}, {bytes}", ", version {film_version}"]),
+    ("scene", &["{scene}, {width}x{height}, depth {max_depth}, {sampler}, seed {seed}"]),
+    ("stage", &["{stage}"]),
+    (
+        "samples",
+        &[
+            "{samples_per_pixel} per pixel",
+            ", samples {sample_ranges}",
+            ", version {sample_version}",
+            ", {rejected_samples} rejected",
+        ],
+    ),
+    ("error", &["{error}"]),
+    ("time", &["{trace_seconds} of tracing"]),
+    ("denoised", &["{denoised}"]),
+    ("backend", &["{backend}"]),
+    ("program", &["{program}"]),
+    ("command", &["{command}"]),
+    ("note", &["{note}"]),
+];
 
 /// Prints the metadata of a file.
 ///
@@ -23,137 +39,66 @@ const SCHEMA: u32 = 1;
 /// [`Failure::Input`] if the file cannot be read or does not say how it was made; [`Failure::Run`] if standard output
 /// cannot be written.
 pub fn run(options: &InfoOptions) -> Result<ExitCode, Failure> {
-    let info = Info::of(&options.file).map_err(Failure::Input)?;
+    let figures = figures(&options.file).map_err(Failure::Input)?;
     let printed = if options.json {
-        write_json(&info.json, Path::new(STANDARD))
+        write_figures(SCHEMA, &figures, Path::new(STANDARD))
     } else {
-        print(&info.text(&options.file))
+        print(&aligned(&lines(&figures, &LINES)))
     };
     printed.map(|()| ExitCode::SUCCESS).map_err(Failure::Run)
 }
 
-/// The metadata of a file.
-struct Info {
-    json: Value,
-    /// The estimated error of a picture, or why a film has none.
-    error: Option<String>,
-    /// Reason why a picture is no longer a film.
-    note: Option<String>,
-}
-
-impl Info {
-    fn of(path: &Path) -> anyhow::Result<Info> {
-        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
-            let recipe = file::load(path)?;
-            let samples = json!({ "samples_per_pixel": recipe.samples_per_pixel });
-            return Ok(Info::new("scene", path, &recipe).with(samples));
-        }
-        let saved = Saved::describe(path)?;
-        let text = |key| saved.description.get(key);
-        let mut info = Info::new("picture", path, &saved.recipe()?).with(json!({
-            "stage": text(key::STAGE),
-            "samples_per_pixel": saved.samples(),
-            "trace_seconds": saved.seconds(),
-            "denoised": text(key::DENOISED),
-            "backend": text(key::BACKEND),
-            "program": text(key::SOFTWARE),
-            "command": text(key::COMMAND),
-        }));
-        info.error = text(key::ERROR).map(str::to_owned);
-        info.with_film(path)
-    }
-
-    fn new(kind: &str, path: &Path, recipe: &Recipe) -> Info {
-        let settings = &recipe.settings;
-        let json = json!({
-            "schema": SCHEMA,
-            "kind": kind,
-            "file": path.to_string_lossy(),
-            "bytes": std::fs::metadata(path).map_or(0, |found| found.len()),
-            "scene": recipe.name,
-            "width": settings.width,
-            "height": settings.height,
-            "max_depth": settings.max_depth,
-            "sampler": settings.sampler.name(),
-            "seed": settings.seed,
-        });
-        Info { json, error: None, note: None }
-    }
-
-    /// Replaces values by those of `more`.
-    fn with(mut self, mut more: Value) -> Info {
-        if let (Some(own), Some(more)) = (self.json.as_object_mut(), more.as_object_mut()) {
-            own.append(more);
-        }
-        self
-    }
-
-    /// Adds the metadata of a film and, if there is memory for its sums, its error.
-    fn with_film(self, path: &Path) -> anyhow::Result<Info> {
-        let head = match checkpoint::read_head(path) {
-            Err(CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. }) => return Ok(self),
-            Err(error @ CheckpointError::Resaved { .. }) => {
-                return Ok(Info { note: Some(error.to_string()), ..self });
+fn figures(path: &Path) -> anyhow::Result<Value> {
+    let saved = saved::open(path)?;
+    let (recipe, settings) = (&saved.recipe, &saved.recipe.settings);
+    let (kind, head, samples) = match &saved.kind {
+        Kind::Scene => ("scene", None, Some(recipe.samples_per_pixel)),
+        Kind::Picture(_) => ("picture", None, saved.samples()),
+        Kind::Film(head) => ("film", Some(head), Some(head.samples.count())),
+    };
+    // A film's error needs memory for its sums.
+    let (mut estimate, mut error) = (None, saved.kind.text(key::ERROR).map(str::to_owned));
+    if head.is_some() {
+        error = Some(match checkpoint::load(path) {
+            Ok(read) => {
+                estimate = read.film.error();
+                let words = || format!("not estimated: {}", read.film.why_no_error());
+                estimate.map_or_else(words, |error| error.words())
             }
-            head => head?,
-        };
-        let (estimate, error) = match checkpoint::load(path) {
-            Ok(read) => match read.film.error() {
-                Some(error) => (Some(error), error.words()),
-                None => (None, format!("not estimated: {}", read.film.why_no_error())),
-            },
-            Err(CheckpointError::Memory { reason, .. }) => (None, reason.to_string()),
+            Err(CheckpointError::Memory { reason, .. }) => reason.to_string(),
             Err(error) => return Err(error.into()),
-        };
-        let info = self.with(json!({
-            "kind": "film",
-            "samples_per_pixel": head.samples.count(),
-            "sample_ranges": head.samples.to_string(),
-            "halves": head.halves,
-            "rejected_samples": head.rejected,
-            "film_version": checkpoint::VERSION,
-            "sample_version": checkpoint::SAMPLE_VERSION,
-            "rmse_estimate": estimate.map(|error| error.rmse),
-            "rmse_deviation": estimate.map(|error| error.rmse_deviation),
-        }));
-        Ok(Info { error: Some(error), ..info })
+        });
     }
-
-    /// One line per entry.
-    fn text(&self, path: &Path) -> String {
-        let text = |key: &str| match &self.json[key] {
-            Value::Null => None,
-            Value::String(text) => Some(text.clone()),
-            other => Some(other.to_string()),
-        };
-        let number = |key: &str| self.json[key].as_u64();
-        let [scene, width, height, depth, sampler, seed] =
-            ["scene", "width", "height", "max_depth", "sampler", "seed"]
-                .map(|key| text(key).unwrap_or_default());
-        let size = memory::words(number("bytes").unwrap_or_default());
-        let samples = [
-            text("samples_per_pixel").map(|samples| format!("{samples} per pixel")),
-            text("sample_ranges").map(|ranges| format!("samples {ranges}")),
-            text("sample_version").map(|version| format!("version {version}")),
-            number("rejected_samples").map(|count| counted(count, "rejected sample")),
-        ];
-        let film = text("film_version").map_or_else(String::new, |version| format!(", version {version}"));
-        let kind = text("kind").unwrap_or_default();
-        let time = self.json["trace_seconds"].as_f64();
-        let lines = [
-            (kind.as_str(), Some(format!("{}, {size}{film}", path.shown()))),
-            ("scene", Some(format!("{scene}, {width}x{height}, depth {depth}, {sampler}, seed {seed}"))),
-            ("stage", text("stage")),
-            ("samples", Some(samples.into_iter().flatten().collect::<Vec<_>>().join(", "))),
-            ("error", self.error.clone()),
-            ("time", time.map(|time| format!("{} of tracing", seconds(time)))),
-            ("denoised", text("denoised")),
-            ("backend", text("backend")),
-            ("program", text("program")),
-            ("command", text("command")),
-            ("note", self.note.clone()),
-        ];
-        let lines = lines.into_iter().filter_map(|(name, value)| Some((name, value?)));
-        lines.map(|(name, value)| format!("{name:<8} {}\n", printable(&value))).collect()
-    }
+    let of_film = |value: fn(&FilmHead) -> Value| head.map(value);
+    let resaved = match checkpoint::read_head(path) {
+        Err(error @ CheckpointError::Resaved { .. }) => Some(error.to_string()),
+        _ => None,
+    };
+    Ok(json!({
+        "kind": kind,
+        "file": path.to_string_lossy(),
+        "bytes": std::fs::metadata(path).map_or(0, |found| found.len()),
+        "scene": recipe.name,
+        "stage": saved.kind.text(key::STAGE),
+        "width": settings.width,
+        "height": settings.height,
+        "max_depth": settings.max_depth,
+        "sampler": settings.sampler.name(),
+        "seed": settings.seed,
+        "samples_per_pixel": samples,
+        "sample_ranges": of_film(|head| head.samples.to_string().into()),
+        "halves": of_film(|head| head.halves.into()),
+        "rejected_samples": of_film(|head| head.rejected.into()),
+        "film_version": of_film(|_| checkpoint::VERSION.into()),
+        "sample_version": of_film(|_| checkpoint::SAMPLE_VERSION.into()),
+        "error": error,
+        "rmse_estimate": estimate.map(|error| error.rmse),
+        "rmse_deviation": estimate.map(|error| error.rmse_deviation),
+        "trace_seconds": saved.seconds(),
+        "denoised": saved.kind.text(key::DENOISED),
+        "backend": saved.kind.text(key::BACKEND),
+        "program": saved.kind.text(key::SOFTWARE),
+        "command": saved.kind.text(key::COMMAND),
+        "note": resaved,
+    }))
 }

@@ -13,6 +13,7 @@ mod summary;
 
 pub use frames::{render_frames, write_frames};
 pub use studio::{Event, Studio};
+pub use summary::{Line, aligned, lines};
 
 use crate::backends;
 use crate::cli::BatchOptions;
@@ -28,11 +29,12 @@ use crate::system::failure::Failure;
 use crate::system::files::{STANDARD, ShownPath, check_replaceable, check_writable, write_text};
 use crate::system::interrupt::Interrupt;
 use anyhow::Context;
+use serde_json::Value;
 use files::Files;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Duration;
-use summary::{SCHEMA, Summary};
+use summary::Summary;
 
 /// Renders and writes everything that the options ask for.
 ///
@@ -43,12 +45,8 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     check_before(&options)?;
     let mut files = Files::lock(&options)?;
     let resumed = resumed(&options)?;
-    let has_stdout = options.writes(Path::new(STANDARD));
-    let beside = if has_stdout { Some(Path::new(STANDARD)) } else { options.json.as_deref() };
-    let report = |summary: &Summary| {
-        let printed = print_beside(beside, &summary.to_string());
-        printed.and(write_figures(&summary.json(), options.json.as_deref()))
-    };
+    let beside = Some(Path::new(STANDARD)).filter(|standard| options.writes(standard));
+    let report = |summary: &Summary| report(&summary.json(), &Summary::LINES, options.json.as_deref(), beside);
     if let Some(saved) = resumed.as_ref().filter(|saved| is_complete(&options, &saved.film)) {
         return report(&summary_of_complete(&options, &saved.film))
             .map(|()| ExitCode::SUCCESS)
@@ -103,8 +101,14 @@ fn summary_of_complete<'a>(render: &'a BatchOptions, film: &Film) -> Summary<'a>
     Summary { render, samples, status, denoised: None, files, writing: Duration::ZERO }
 }
 
-fn write_figures(figures: &serde_json::Value, target: Option<&Path>) -> anyhow::Result<()> {
-    target.map_or(Ok(()), |target| terminal::write_figures(SCHEMA, figures, target))
+/// Version of the JSON. Incremented when a key is removed or changes meaning.
+const SCHEMA: u32 = 1;
+
+/// Prints lines about figures, and writes the figures as JSON. If either JSON or a picture, `beside`, takes standard
+/// output, the lines go to standard error.
+fn report(figures: &Value, table: &[Line], json: Option<&Path>, beside: Option<&Path>) -> anyhow::Result<()> {
+    let printed = print_beside(beside.or(json), &aligned(&lines(figures, table)));
+    printed.and(json.map_or(Ok(()), |target| terminal::write_figures(SCHEMA, figures, target)))
 }
 
 /// The result of a run. `figures` is the outcome of printing and writing its figures.

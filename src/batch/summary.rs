@@ -1,18 +1,63 @@
-//! The final figures of a picture, as text and as JSON.
+//! The final figures of a run: lines for people, and the same figures as JSON.
 
 use crate::cli::BatchOptions;
 use crate::denoise::DenoisedError;
-use crate::progressive::describe::{counted, seconds};
-use crate::progressive::{Contribution, Phase, Status};
+use crate::progressive::describe::seconds;
+use crate::progressive::{Phase, Status};
 use crate::system::console::printable;
-use crate::system::files::ShownPath;
+use crate::system::memory;
 use serde_json::{Value, json};
-use std::fmt;
+use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Version of the JSON. Incremented when a key is removed or changes meaning.
-pub(super) const SCHEMA: u32 = 1;
+/// A label, and pieces of the line after it. `{key}` in a piece stands for a figure; a piece that lacks one is left
+/// out, and so is a line without pieces.
+pub type Line = (&'static str, &'static [&'static str]);
+
+/// The lines about `figures`, with their labels. Times and speeds have units.
+pub fn lines(figures: &Value, lines: &[Line]) -> Vec<(&'static str, String)> {
+    let filled = |piece: &&str| -> Option<String> {
+        let mut parts = piece.split(['{', '}']);
+        let mut text = parts.next()?.to_owned();
+        while let (Some(key), Some(rest)) = (parts.next(), parts.next()) {
+            text += &words(key, figures.pointer(&format!("/{key}"))?)?;
+            text += rest;
+        }
+        Some(text)
+    };
+    let line = |(label, pieces): &Line| (*label, pieces.iter().filter_map(filled).collect::<String>());
+    lines.iter().map(line).filter(|(_, text)| !text.is_empty()).collect()
+}
+
+/// A figure in words; `None` if there is none.
+fn words(key: &str, value: &Value) -> Option<String> {
+    Some(match (value, value.as_f64()) {
+        (Value::Null, _) => return None,
+        (Value::String(text), _) => printable(text).into_owned(),
+        (Value::Array(list), _) if list.is_empty() => return None,
+        (Value::Array(list), _) => list.iter().filter_map(|item| words(key, item)).collect::<Vec<_>>().join(", "),
+        (_, Some(time)) if key.ends_with("_seconds") && time < 60.0 => format!("{time:.3} s"),
+        (_, Some(time)) if key.ends_with("_seconds") => seconds(time),
+        (_, Some(speed)) if key.ends_with("_per_second") => format!("{:.2} M", speed / 1e6),
+        (_, Some(bytes)) if key == "bytes" => memory::words(bytes as u64),
+        (_, Some(number)) if value.is_f64() && number != 0.0 && !(0.01..1e4).contains(&number.abs()) => {
+            format!("{number:.2e}")
+        }
+        (_, Some(number)) if value.is_f64() => format!("{number:.3}"),
+        _ => value.to_string(),
+    })
+}
+
+/// Labelled lines in aligned columns.
+pub fn aligned<'a>(lines: &[(&'a str, String)]) -> String {
+    let width = lines.iter().map(|(label, _)| label.len()).max().unwrap_or(0) + 1;
+    lines.iter().fold(String::new(), |mut text, (label, content)| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{label:<width$} {content}");
+        text
+    })
+}
 
 /// Time and quality of one picture. Times and counts are those of this run; samples per pixel, rejected samples and the
 /// estimates are those of the film, including its earlier samples.
@@ -29,25 +74,38 @@ pub(super) struct Summary<'a> {
 }
 
 impl Summary<'_> {
-    fn ended_by(&self) -> (&'static str, &'static str) {
-        match &self.status.phase {
-            Phase::Done(reason) => (reason.name(), reason.words()),
-            Phase::Failed(_) => ("failure", "a failure"),
-            _ => ("nothing", "nothing"),
-        }
-    }
-
-    fn preparing_seconds(&self) -> f64 {
-        self.status.prepare.saturating_sub(self.status.hierarchy).as_secs_f64()
-    }
-
-    fn total_seconds(&self) -> f64 {
-        (self.status.elapsed + self.writing).as_secs_f64()
-    }
+    pub const LINES: [Line; 10] = [
+        ("scene", &["{scene}, {width}x{height}, depth {max_depth}, {sampler}, seed {seed}"]),
+        ("backend", &["{backend} {device}, lanes {lanes}, threads {threads}"]),
+        ("kernel", &["{kernel}"]),
+        ("left out", &["{left_out}"]),
+        (
+            "samples",
+            &["{samples_per_pixel} per pixel, {added_samples_per_pixel} of them new, ended by {ended_by}"],
+        ),
+        (
+            "time",
+            &["{total_seconds} (prepare {prepare_seconds}, build hierarchy {hierarchy_seconds}, \
+               trace {trace_seconds}, write {write_seconds})"],
+        ),
+        (
+            "speed",
+            &["{paths_per_second}paths/s, {rays_per_second}rays/s", ", {lane_occupancy} of all lanes in use"],
+        ),
+        ("error", &["{error}, ", "rejected samples {rejected_samples}"]),
+        ("denoised", &["{denoised}"]),
+        ("files", &["{files}"]),
+    ];
 
     pub fn json(&self) -> Value {
         let Summary { render, status, .. } = self;
         let (settings, backend, error) = (render.job.settings(), status.backend.as_ref(), status.error);
+        let preparing = status.prepare.saturating_sub(status.hierarchy);
+        let ended_by = match &status.phase {
+            Phase::Done(reason) => reason.name(),
+            Phase::Failed(_) => "failure",
+            _ => "nothing",
+        };
         json!({
             "scene": render.recipe.name,
             "stage": render.stage.map(|stage| stage.id),
@@ -65,94 +123,29 @@ impl Summary<'_> {
             "samples_per_pixel": status.samples_per_pixel,
             "sample_ranges": self.samples.as_deref().unwrap_or_default(),
             "added_samples_per_pixel": status.added(),
-            "prepare_seconds": self.preparing_seconds(),
+            "prepare_seconds": preparing.as_secs_f64(),
             "hierarchy_seconds": status.hierarchy.as_secs_f64(),
             "trace_seconds": status.trace.as_secs_f64(),
             "write_seconds": self.writing.as_secs_f64(),
-            "total_seconds": self.total_seconds(),
+            "total_seconds": (status.elapsed + self.writing).as_secs_f64(),
             "paths": status.stats.paths,
             "rays": status.stats.rays,
             "paths_per_second": status.paths_per_second(),
             "rays_per_second": status.rays_per_second(),
             "lane_occupancy": status.lane_occupancy(),
+            "error": error.map(|error| error.words()),
             "rmse_estimate": error.map(|error| error.rmse),
             "rmse_deviation": error.map(|error| error.rmse_deviation),
             "rel_mse_estimate": error.map(|error| error.rel_mse),
+            "denoised": self.denoised.map(|error| error.words()),
             "denoised_rmse_estimate": self.denoised.map(|error| error.rmse()),
             "denoised_rmse_deviation": self.denoised.map(|error| error.rmse_deviation()),
             "rejected_samples": status.rejected_samples,
-            "ended_by": self.ended_by().0,
+            "ended_by": ended_by,
             "backends": status.contributions,
             "history": status.history,
             "warnings": status.messages,
             "files": self.files.iter().map(|file| file.to_string_lossy()).collect::<Vec<_>>(),
         })
-    }
-
-    /// Lines about what rendered it.
-    fn backend_lines(&self) -> Vec<(&'static str, String)> {
-        let Status { backend: Some(backend), kernel, left_out, contributions, .. } = &self.status else {
-            return Vec::new();
-        };
-        let lanes = counted(backend.lanes as u64, "lane");
-        let threads = counted(backend.threads as u64, "thread");
-        let left_out = if left_out.is_empty() { "nothing".to_owned() } else { left_out.join(", ") };
-        let mut lines = vec![
-            ("backend", format!("{} {}, {lanes}, {threads}", backend.name, backend.device)),
-            ("kernel", kernel.clone()),
-            ("left out", left_out),
-        ];
-        if contributions.len() > 1 {
-            let share = |part: &Contribution| {
-                format!("{} by {} {}", part.samples_per_pixel, part.backend.name, part.backend.device)
-            };
-            lines.push(("shares", contributions.iter().map(share).collect::<Vec<_>>().join(", ")));
-        }
-        lines
-    }
-}
-
-impl fmt::Display for Summary<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Summary { render, status, .. } = self;
-        let settings = render.job.settings();
-        let scene = format!(
-            "{}, {}x{}, depth {}, {}, seed {}",
-            printable(&render.recipe.name),
-            settings.width,
-            settings.height,
-            settings.max_depth,
-            settings.sampler.name(),
-            settings.seed
-        );
-        let (held, added) = (status.samples_per_pixel, status.added());
-        let new = if added == held { String::new() } else { format!(" ({added} of them new)") };
-        let samples = format!("{held}{new} per pixel, ended by {}", self.ended_by().1);
-        let time = format!(
-            "{} (prepare {:.3} s, build hierarchy {:.3} s, trace {:.3} s, write {:.3} s)",
-            seconds(self.total_seconds()),
-            self.preparing_seconds(),
-            status.hierarchy.as_secs_f64(),
-            status.trace.as_secs_f64(),
-            self.writing.as_secs_f64()
-        );
-        let [paths, rays] = [status.paths_per_second(), status.rays_per_second()].map(|speed| speed / 1e6);
-        let lanes = status.lane_occupancy().map(|share| format!(", {:.1} % of lanes in use", 100.0 * share));
-        let speed = format!("{paths:.2} Mpaths/s, {rays:.2} Mrays/s{}", lanes.unwrap_or_default());
-        let rejected = counted(status.rejected_samples, "rejected sample");
-        let error = match &status.error {
-            Some(error) if error.is_without_noise() => {
-                format!("{} (the two halves agree), {rejected}", error.words())
-            }
-            Some(error) => format!("{} (estimated from the two halves), {rejected}", error.words()),
-            None => format!("not estimated, {rejected}"),
-        };
-        let denoised = self.denoised.map(|error| ("denoised", error.words()));
-        let files = self.files.iter().map(ShownPath::shown).collect::<Vec<_>>().join(", ");
-        let files = if files.is_empty() { "none".to_owned() } else { files };
-        let figures = [("samples", samples), ("time", time), ("speed", speed), ("error", error)];
-        let lines = std::iter::once(("scene", scene)).chain(self.backend_lines()).chain(figures);
-        let lines = lines.chain(denoised).chain([("files", files)]);
-        lines.into_iter().try_for_each(|(name, value)| writeln!(f, "{name:<8} {value}"))
     }
 }

@@ -4,7 +4,6 @@ use crate::cli::terminal::{print_beside, write_figures};
 use crate::system::failure::{BAD_INPUT, FAILED};
 use anyhow::Result;
 use serde::Serialize;
-use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -24,17 +23,6 @@ impl Verdict {
             Verdict::Unclear => ExitCode::from(BAD_INPUT),
         }
     }
-}
-
-/// Labelled lines in aligned columns.
-pub fn lines<'a>(lines: impl IntoIterator<Item = (&'a str, String)>) -> String {
-    let lines: Vec<(&str, String)> = lines.into_iter().collect();
-    let width = lines.iter().map(|(label, _)| label.len()).max().unwrap_or(0) + 1;
-    lines.iter().fold(String::new(), |mut text, (label, content)| {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{label:<width$} {content}");
-        text
-    })
 }
 
 /// Prints `text` (to standard error if JSON takes standard output) and writes `figures` as JSON.

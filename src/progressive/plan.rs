@@ -127,16 +127,6 @@ impl EndReason {
             EndReason::Stopped => "stopped",
         }
     }
-
-    /// The reason, as in "ended by ...".
-    pub fn words(self) -> &'static str {
-        match self {
-            EndReason::Samples => "the number of samples",
-            EndReason::TimeLimit => "the time limit",
-            EndReason::NoiseTarget => "the noise target",
-            EndReason::Stopped => "a request to stop",
-        }
-    }
 }
 
 #[cfg(test)]

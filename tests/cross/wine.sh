@@ -97,10 +97,10 @@ grep -qF 'dxcompiler.dll' "$work/out"
 report 'a GPU that cannot compile' $?
 exists 'the CPU continues' gpu.exr
 WGPU_BACKEND=noop case_of 'stress' 0 '' stress --filter copies
-case_of 'plans' 0 render-part plan --scene metals --size 64x36 --samples 64 --parts 2 --out plan
-case_of 'renders part 0' 0 '' render-part plan --part 0 --device cpu
-"$host" render-part plan --part 1 --device cpu > "$work/out" 2>&1
-case_of "merges with Linux's part 1" 0 '' merge plan --out merged.exr
+part=(--batch --device cpu --scene metals --size 64x36)
+case_of 'renders a part' 0 part-0.exr "${part[@]}" --sample-range 0..32 --checkpoint part-0.exr --continue
+"$host" "${part[@]}" --sample-range 32..64 --checkpoint part-1.exr --continue > "$work/out" 2>&1
+case_of "merges with Linux's part" 0 '' merge part-0.exr part-1.exr --samples 64 --out merged.exr
 "$host" --batch --device cpu --scene metals --size 64x36 --samples 64 --out whole.exr > "$work/out" 2>&1
 same_bits 'the merged film is the whole' merged.exr whole.exr
 

@@ -24,7 +24,8 @@ pub use mine::Mine;
 pub use mistakes::MISTAKES;
 pub use watch::{POLL_INTERVAL, Watched};
 
-use super::answer::{Verdict, deliver, lines};
+use super::answer::{Verdict, deliver};
+use crate::batch::aligned;
 use crate::cli::terminal::{Display, print_beside};
 use crate::cli::{CheckOptions, check_outputs};
 use crate::numbers::heat::HeatScale;
@@ -161,7 +162,7 @@ pub fn text(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> S
         let files: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
         text.push(("files", files.join(", ")));
     }
-    lines(text)
+    aligned(&text)
 }
 
 /// The report as JSON.

@@ -5,8 +5,9 @@ mod verdict;
 
 pub use verdict::{Comparison, ROUNDING_BIAS, compare, half_differences};
 
-use super::answer::{Verdict, deliver, lines};
+use super::answer::{Verdict, deliver};
 use super::picture::Picture;
+use crate::batch::aligned;
 use crate::cli::{CompareOptions, check_outputs};
 use crate::numbers::statistics::blocks::{Block, SUM_DEVIATIONS};
 use anyhow::{Result, bail};
@@ -80,7 +81,7 @@ pub fn text(sides: &[Picture; 2], comparison: &Comparison) -> String {
         Verdict::Unclear => "cannot tell",
     };
     text.push(("verdict", verdict.to_owned()));
-    lines(text)
+    aligned(&text)
 }
 
 /// The comparison as JSON.

@@ -6,7 +6,8 @@ mod text;
 
 pub use paths::{Difference, Pair, PathComparison};
 
-use super::answer::{Verdict, deliver, lines};
+use super::answer::{Verdict, deliver};
+use crate::batch::aligned;
 use crate::cli::DiffOptions;
 use crate::job::render::{RenderError, RenderJob, RenderSettings};
 use anyhow::Result;
@@ -73,7 +74,7 @@ fn opening(scene: &str, pair: &Pair, sides: &[Side; 2], found: Found) -> String 
     text.push(("path", format!("pixel {x},{y}, sample {sample}")));
     text.push(("left", sides[0].about.clone()));
     text.push(("right", sides[1].about.clone()));
-    lines(text)
+    aligned(&text)
 }
 
 /// The path to compare, with the result of the search.
