@@ -276,7 +276,7 @@ mod tests {
             [&["--checkpoint", &film, "--continue", "--out", &out][..], &["--out", &film, "--samples", "64"]]
         {
             let render = options(flags);
-            let held = SavedFilm { film: held.clone(), seconds: None, backend: None };
+            let held = SavedFilm { film: held.clone(), seconds: None };
             let mut files = Files::lock(&render).unwrap();
             assert!(files.check(render.resume.is_some().then_some(&held)).unwrap().is_empty());
             for (end, expected) in [(8, 32), (40, 40)] {

@@ -229,7 +229,8 @@ pub(super) fn request(mut flags: RenderFlags, matches: &ArgMatches) -> Result<Re
         other => picture = other,
     }
     let files = &mut flags.files;
-    if files.go_on && files.checkpoint.as_ref().is_some_and(|film| film.exists()) {
+    let is_film = |film: &PathBuf| film.metadata().is_ok_and(|found| found.len() > 0);
+    if files.go_on && files.checkpoint.as_ref().is_some_and(is_film) {
         files.resume.clone_from(&files.checkpoint);
     }
     match (flags.batch, &flags.files.save_scene) {

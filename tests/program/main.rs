@@ -22,5 +22,5 @@ mod output_files;
 mod packaging;
 mod panics;
 mod pictures;
-mod plan;
+mod ranges;
 mod stress;

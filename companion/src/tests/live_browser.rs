@@ -9,7 +9,7 @@ use std::process::Command;
 use std::sync::Arc;
 use weekender::film::{Film, PixelSum};
 use weekender::job::recipe::{Recipe, file::to_toml};
-use weekender::job::saved::open_film;
+use weekender::job::saved::open;
 use weekender::stages::Stage;
 
 /// Makes Chromium's software adapter an ordinary Vulkan adapter.
@@ -59,7 +59,7 @@ fn program_film(directory: &Path, name: &str, recipe: &Recipe) -> Film {
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{told}");
     assert!(!told.contains("continues"), "the program left the adapter: {told}");
-    open_film(&file("exr")).unwrap().1.film
+    open(&file("exr")).unwrap().film().unwrap().film
 }
 
 fn browser_film(file: &Path) -> Vec<PixelSum> {

@@ -78,17 +78,6 @@ fn outputs_never_replace_inputs_or_each_other() {
 }
 
 #[test]
-fn outputs_never_replace_files_of_a_plan() {
-    let directory = temp();
-    let plan = ["plan", "--parts", "2", "--size", "8x4", "--samples", "4", "--out"];
-    succeeds(directory.path(), &[&plan[..], &["q"]].concat());
-    for name in ["q/plan.json", "q/scene.toml", "q/part-1.exr"] {
-        refused_in(&directory, &["render-part", "q", "--part", "0", "--json", name], &[name]);
-    }
-    refused_in(&directory, &["merge", "q", "--out", "q/part-0.exr"], &["q/part-0.exr"]);
-}
-
-#[test]
 fn a_render_writes_all_its_outputs() {
     let directory = temp();
     let out = ["a.png", "b.exr", "c.ppm", "d.exr"].map(|name| ["--out", name]).concat();

@@ -8,5 +8,5 @@
 mod common;
 mod limits;
 mod outputs;
-mod parts;
+mod ranges;
 mod signals;

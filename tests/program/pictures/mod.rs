@@ -122,7 +122,7 @@ fn resaved_film_is_a_picture() {
         assert!(found.is_equal(), "{name}: {:?} {:?}", found.reasons, found.unclear);
         let found = picture(name);
         assert!(found.film.is_none() && (found.width, found.height) == (film.width(), film.height()));
-        let refused = saved::open_film(&file(name)).unwrap_err();
+        let refused = saved::open(&file(name)).and_then(|saved| saved.film()).unwrap_err();
         assert!(matches!(refused, OpenError::Film(CheckpointError::Resaved { .. })), "{refused}");
         assert!(refused.to_string().contains("another program re-saved it"), "{refused}");
     }
