@@ -38,7 +38,7 @@ pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
     };
     run.display.clear();
     let figures = report(&run.json(), &LINES, options.json.as_deref(), None);
-    if run.done() < options.frames.len() as u32 {
+    if failure.is_none() && run.done() < options.frames.len() as u32 {
         console::note("run the same command again to continue");
     }
     ended(failure, figures, &interrupt)

@@ -92,7 +92,9 @@ fn missing(sum: &FilmSum, left_out: &[LeftOut], end: u64) -> Vec<(Range<u64>, Pa
         Some((path.to_path_buf(), head.samples))
     }));
     let mut starts: Vec<(u64, &PathBuf)> = vec![(0, &sum.parts()[0].0)];
-    starts.extend(films.iter().flat_map(|(path, samples)| samples.iter().map(move |range| (range.start, path))));
+    starts.extend(
+        films.iter().flat_map(|(path, samples)| samples.iter().map(move |range| (range.start, path))),
+    );
     starts.sort_by_key(|(start, _)| *start);
     let (mut found, mut from) = (Vec::new(), 0);
     while let Some(gap) = sum.film().samples().first_gap(from..end, u64::MAX) {

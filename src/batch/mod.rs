@@ -29,8 +29,8 @@ use crate::system::failure::Failure;
 use crate::system::files::{STANDARD, ShownPath, check_replaceable, check_writable, write_text};
 use crate::system::interrupt::Interrupt;
 use anyhow::Context;
-use serde_json::Value;
 use files::Files;
+use serde_json::Value;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -46,7 +46,8 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     let mut files = Files::lock(&options)?;
     let resumed = resumed(&options)?;
     let beside = Some(Path::new(STANDARD)).filter(|standard| options.writes(standard));
-    let report = |summary: &Summary| report(&summary.json(), &Summary::LINES, options.json.as_deref(), beside);
+    let report =
+        |summary: &Summary| report(&summary.json(), &Summary::LINES, options.json.as_deref(), beside);
     if let Some(saved) = resumed.as_ref().filter(|saved| is_complete(&options, &saved.film)) {
         return report(&summary_of_complete(&options, &saved.film))
             .map(|()| ExitCode::SUCCESS)

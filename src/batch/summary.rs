@@ -36,7 +36,9 @@ fn words(key: &str, value: &Value) -> Option<String> {
         (Value::Null, _) => return None,
         (Value::String(text), _) => printable(text).into_owned(),
         (Value::Array(list), _) if list.is_empty() => return None,
-        (Value::Array(list), _) => list.iter().filter_map(|item| words(key, item)).collect::<Vec<_>>().join(", "),
+        (Value::Array(list), _) => {
+            list.iter().filter_map(|item| words(key, item)).collect::<Vec<_>>().join(", ")
+        }
         (_, Some(time)) if key.ends_with("_seconds") && time < 60.0 => format!("{time:.3} s"),
         (_, Some(time)) if key.ends_with("_seconds") => seconds(time),
         (_, Some(speed)) if key.ends_with("_per_second") => format!("{:.2} M", speed / 1e6),

@@ -45,9 +45,11 @@ impl Picture {
             Ok(saved) => Some(saved),
             // Most pictures have no description, and the pixels can be compared without one. Reading the picture below
             // reports its own errors.
-            Err(OpenError::Picture(_) | OpenError::Recipe(_) | OpenError::Film(CheckpointError::Resaved { .. })) => {
-                None
-            }
+            Err(
+                OpenError::Picture(_)
+                | OpenError::Recipe(_)
+                | OpenError::Film(CheckpointError::Resaved { .. }),
+            ) => None,
             Err(error) => return Err(error.into()),
         };
         let described = |key| Some(saved.as_ref()?.kind.text(key)?.to_owned());

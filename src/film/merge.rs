@@ -40,11 +40,7 @@ impl FilmSum {
     ///
     /// # Errors
     /// Which files do not match, and why; the sum is then unchanged.
-    pub fn add(
-        &mut self,
-        path: &Path,
-        same_job: impl Fn(&str, &str) -> Result<(), String>,
-    ) -> Result<()> {
+    pub fn add(&mut self, path: &Path, same_job: impl Fn(&str, &str) -> Result<(), String>) -> Result<()> {
         let FilmFile { film, description } = checkpoint::load(path)?;
         let (first, other) = (self.parts[0].0.shown(), path.shown());
         if let Err(difference) = same_job(self.description.recipe(), description.recipe()) {

@@ -162,7 +162,9 @@ fn films_are_added_or_refused_and_left_out_with_samples() {
         assert!(out.contains("8 samples per pixel (0..8) from 1 film\nleft out: "), "{out}");
         assert!(out.contains(words) && !out.contains("missing"), "{words}: {out}");
     }
-    for arguments in [&["a.exr", "./a.exr", "--out", "m.exr"][..], &["a.exr", "b c.exr"], &["f.exr", "--samples", "4"]] {
+    for arguments in
+        [&["a.exr", "./a.exr", "--out", "m.exr"][..], &["a.exr", "b c.exr"], &["f.exr", "--samples", "4"]]
+    {
         ends(at, 2, &[&["merge"], arguments].concat());
     }
     let message = succeeds(at, &["merge", "a.exr", "b c.exr", "--out", "all.exr", "--out", "all.png"]);
@@ -175,12 +177,17 @@ fn films_are_added_or_refused_and_left_out_with_samples() {
 #[test]
 fn documented_makefile_renders_and_merges() {
     use crate::common::program::PROGRAM;
-    if !std::process::Command::new("make").arg("--version").output().is_ok_and(|output| output.status.success()) {
+    if !std::process::Command::new("make")
+        .arg("--version")
+        .output()
+        .is_ok_and(|output| output.status.success())
+    {
         return crate::common::skip::report_untested("there is no make");
     }
     let at = TempDir::new().unwrap();
     let at = at.path();
-    let docs = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/many-machines.md")).unwrap();
+    let docs =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/many-machines.md")).unwrap();
     let makefile = docs.split("```make\n").nth(1).unwrap().split("```").next().unwrap();
     let small = [
         ("seq 0 128 3968", "seq 0 4 8".to_owned()),

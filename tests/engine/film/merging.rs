@@ -5,10 +5,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use weekender::film::{CheckpointError, Description, Film, FilmError, FilmSum, checkpoint, key};
 
-fn merged(
-    paths: &[&PathBuf],
-    same_job: fn(&str, &str) -> Result<(), String>,
-) -> anyhow::Result<FilmSum> {
+fn merged(paths: &[&PathBuf], same_job: fn(&str, &str) -> Result<(), String>) -> anyhow::Result<FilmSum> {
     let mut sum = FilmSum::read(paths[0])?;
     paths[1..].iter().try_for_each(|path| sum.add(path, same_job))?;
     Ok(sum)
