@@ -114,11 +114,11 @@ impl Args for BackendChoice {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{Command, Request, parse};
+    use crate::cli::{Request, parse};
 
     fn backend(flags: &str) -> Result<BackendChoice, String> {
-        match parse(format!("weekender render-part no-such --part 1 {flags}").split(' ').map(Into::into)) {
-            Ok(Request::Command(Command::RenderPart(options))) => Ok(options.backend),
+        match parse(format!("weekender --batch {flags}").split(' ').map(Into::into)) {
+            Ok(Request::Batch(options)) => Ok(options.backend),
             other => Err(other.unwrap_err().to_string()),
         }
     }

@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::backends::BackendChoice;
-use crate::job::plan::Format;
 use crate::render_gpu::GpuOptions;
 
 fn request(line: &str) -> Result<Request, Failure> {
@@ -20,7 +19,7 @@ fn the_definition_of_all_flags_is_consistent() {
 
 #[test]
 fn a_negative_number_is_a_wrong_value() {
-    for line in ["--batch --samples -3", "bench --runs -1", "plan --parts -2"] {
+    for line in ["--batch --samples -3", "bench --runs -1"] {
         let message = refused(line);
         assert!(message.contains("invalid value '-"), "{message}");
     }
@@ -63,25 +62,6 @@ fn the_recorded_command_has_file_names_instead_of_paths() {
             Shell::HERE.quoted("my scene.toml")
         )
     );
-}
-
-#[test]
-fn a_plan_has_its_format_and_its_flags() {
-    let planned = |flags: &str| match request(&format!("plan --out no-such-plan {flags}")) {
-        Ok(Request::Command(Command::Plan(options))) => *options,
-        other => panic!("{other:?}"),
-    };
-    let options =
-        planned("--parts 2 --samples 4 --format make --device auto --simd off --threads 3 --every 2m");
-    assert_eq!((options.format, options.divided().unwrap().0.samples_per_pixel), (Format::Make, 4));
-    assert_eq!(
-        options.divided().unwrap().2.flags,
-        ["--device=auto", "--simd=off", "--threads=3", "--every=2m"]
-    );
-    assert!(planned("--parts 2 --sample-range 4..8").divided().unwrap().2.flags.is_empty());
-    let error = planned("--parts 5 --samples 4").divided().unwrap_err().to_string();
-    assert!(error.contains("there are 4 samples"), "{error}");
-    assert!(refused("merge p --out no-such.exr --check").contains("--check"));
 }
 
 #[test]

@@ -55,11 +55,11 @@ fn merged_files_are_the_film_of_one_run() {
         .collect();
     let sum = merged(&[&paths[0], &paths[1], &paths[2]], same_recipe_text).unwrap();
     assert!(*sum.film() == noisy_film(5, 3, 2, &[0..12]));
-    let description = sum.description();
-    assert_eq!(description.get(key::SAMPLES), Some("12"));
-    assert_eq!(description.get(key::SECONDS), Some("4.5"));
-    assert_eq!(description.get(key::BACKEND), Some("cpu; gpu"));
-    assert_eq!(description.recipe(), RECIPE);
+    let of_sum = sum.description();
+    assert_eq!(of_sum.get(key::SAMPLES), Some("12"));
+    assert_eq!(of_sum.get(key::SECONDS), Some("4.5"));
+    assert_eq!(of_sum.get(key::BACKEND), Some("cpu; gpu"));
+    assert_eq!(of_sum.recipe(), RECIPE);
 
     // Overlap: the message names both files and the samples.
     let overlapping = directory.path().join("overlapping.exr");
