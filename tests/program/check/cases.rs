@@ -23,7 +23,6 @@ fn right_pictures_are_not_accused() {
     for (name, stage, known) in [
         ("right-11.5-listing79-fuzz0.png", None, Some("listing-79")),
         ("right-9.1-with-acne.png", Some("diffuse"), Some("acne-early")),
-        ("right-3-samples.png", None, None),
         ("right-4-samples.png", None, None),
         ("v3-metal.png", None, Some("edition-scene")),
     ] {
@@ -93,8 +92,6 @@ fn shapes_of_numbers_are_understood() {
     for (file, part) in [
         (shaped("P3\n96 54\n255\n", size, |[r, g, b]| format!("{r} {g} {b} 255\n")), "four numbers"),
         (shaped("P3\n96 54\n255\n", size, |[r, g, b]| format!("({r}, {g}, {b})\n")), "brackets"),
-        (shaped("P3\n96 54\n255\n", size, |[r, g, b]| format!("[{r} {g} {b}];\n")), "brackets"),
-        (shaped("P3\n96 54\n255\n", size, |[r, g, b]| format!("vec3({r}, {g}, {b})\n")), "brackets"),
         (shaped("P6\n96 54\n255\n", size, plain), "numbers follow as text"),
         (shaped("P2\n96 54\n255\n", size, plain), "three numbers per pixel"),
         (shaped("P3\n255\n96 54\n", size, plain), "before width and height"),
