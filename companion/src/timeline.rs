@@ -5,8 +5,9 @@ use crate::words::numbered;
 use anyhow::Result;
 use maud::{Markup, html};
 use std::fmt::Write;
-use weekender::backends::explain::{Activity, Timeline, timeline};
+use weekender::kernel::path_record::PathRecord;
 use weekender::render_cpu::{Isa, PathRecorder};
+use weekender::scene::{Look, Scene};
 use weekender::stages::Stage;
 
 /// Lanes of the packet.
@@ -21,6 +22,16 @@ const SIZE: [f64; 2] = [10.0, 720.0];
 /// Gap between lanes.
 const GAP: f64 = 1.5;
 
+/// What a lane does in a step.
+#[derive(Clone, Copy, PartialEq)]
+enum Activity {
+    Camera,
+    Matte,
+    Metal,
+    Glass,
+    Waits,
+}
+
 /// Meaning of the colours, with their CSS classes.
 const LEGEND: [(Activity, &str, &str); 5] = [
     (Activity::Camera, "from-camera", "a ray from the camera"),
@@ -29,6 +40,9 @@ const LEGEND: [(Activity, &str, &str); 5] = [
     (Activity::Glass, "off-glass", "off or through glass"),
     (Activity::Waits, "waits", "waits"),
 ];
+
+/// The steps of a packet: a row per lane, all equally long.
+type Timeline = Vec<Vec<Activity>>;
 
 /// The figure for a stage: the packet in the middle of its picture, without and with refill.
 pub fn figure(id: &str, uses: &mut Uses) -> Result<Markup> {
@@ -42,9 +56,13 @@ pub fn figure(id: &str, uses: &mut Uses) -> Result<Markup> {
     let lane = |lane| (0..SAMPLES).map(|sample| recorder.record(pixel(lane), sample)).collect::<Vec<_>>();
     let paths: Vec<_> = (0..LANES).map(lane).collect();
     let [plain, refilled] = [false, true].map(|refill| timeline(job.scene(), &paths, refill));
-    let columns = plain.len().max(refilled.len()).max(1);
+    // Refill never takes longer.
+    let columns = plain[0].len();
     let summary = |timeline: &Timeline| {
-        format!("{} steps, {:.0} % of the lanes at work", timeline.len(), 100.0 * timeline.share_at_work())
+        let places = timeline.len() * timeline[0].len();
+        let at_work = timeline.iter().flatten().filter(|activity| **activity != Activity::Waits).count();
+        let share = 100.0 * at_work as f64 / places as f64;
+        format!("{} steps, {share:.0} % of the lanes at work", timeline[0].len())
     };
     Ok(html! {
         figure .timeline id={ "timeline-" (id) } {
@@ -64,14 +82,39 @@ pub fn figure(id: &str, uses: &mut Uses) -> Result<Markup> {
     })
 }
 
+/// Lays out the paths of each lane over time as a packet traces them. With `refill`, a lane starts its next path at
+/// once; otherwise all lanes start their next paths when the longest has ended.
+fn timeline(scene: &Scene, paths: &[Vec<PathRecord>], refill: bool) -> Timeline {
+    let mut lanes: Timeline = vec![Vec::new(); paths.len()];
+    for sample in 0..SAMPLES as usize {
+        for (lane, paths) in lanes.iter_mut().zip(paths) {
+            lane.push(Activity::Camera);
+            let rays = &paths[sample].rays;
+            // The last ray's hit scatters no other.
+            lane.extend(rays[..rays.len().saturating_sub(1)].iter().filter_map(|ray| ray.hit).map(|hit| {
+                match scene.material_of(&scene.spheres[hit.sphere]).look() {
+                    Look::Matte => Activity::Matte,
+                    Look::Mirror { .. } => Activity::Metal,
+                    Look::Glass { .. } => Activity::Glass,
+                }
+            }));
+        }
+        if !refill || sample + 1 == SAMPLES as usize {
+            let longest = lanes.iter().map(Vec::len).max().unwrap_or_default();
+            lanes.iter_mut().for_each(|lane| lane.resize(longest, Activity::Waits));
+        }
+    }
+    lanes
+}
+
 /// One timeline, `columns` steps wide.
 fn drawing(timeline: &Timeline, columns: usize) -> Markup {
     let [row, width] = SIZE;
     let column = width / columns as f64;
-    let height = row * timeline.lanes.len() as f64;
+    let height = row * timeline.len() as f64;
     let path = |activity: Activity| {
         let mut path = String::new();
-        for (lane, activities) in timeline.lanes.iter().enumerate() {
+        for (lane, activities) in timeline.iter().enumerate() {
             for step in (0..activities.len()).filter(|step| activities[*step] == activity) {
                 let (x, y) = (step as f64 * column, lane as f64 * row);
                 let (across, down) = (column - GAP.min(0.25 * column), row - GAP);

@@ -52,7 +52,7 @@ impl BackendChoice {
             BackendChoice::Cpu(options) | BackendChoice::Both(options, _) => Some(*options),
             _ => None,
         });
-        let best = CpuOptions { isa: None, lanes: None, panics_after: None, ..given.unwrap_or_default() };
+        let best = CpuOptions { isa: None, lanes: None, ..given.unwrap_or_default() };
         let plainest = CpuOptions { isa: Some(Isa::Portable), lanes: Some(1), ..best };
         let runs_alike = |a: &BackendChoice, b: &BackendChoice| match (a, b) {
             (BackendChoice::Cpu(a), BackendChoice::Cpu(b)) => (a.isa, a.lanes) == (b.isa, b.lanes),
@@ -194,11 +194,6 @@ mod tests {
         let words: Vec<_> = failed.iter().map(BackendChoice::words).collect();
         assert_eq!(words, ["CPU and GPU", "the CPU", "the CPU's scalar code", "the reference"]);
         assert_eq!(failed[1], BackendChoice::Cpu(low_priority));
-        let panicked = CpuOptions { panics_after: Some(3), ..CpuOptions::default() };
-        let next = BackendChoice::fallback(&[BackendChoice::Cpu(panicked)]);
-        let Some(BackendChoice::Cpu(options)) = &next else { panic!("{next:?}") };
-        assert_eq!(options.panics_after, None);
-        assert_eq!(next.map(|next| next.words()), Some("the CPU's scalar code"));
     }
 
     fn adapter(is_software: bool, lacks: Option<&str>) -> AdapterInfo {

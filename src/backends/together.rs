@@ -140,8 +140,7 @@ impl Renderer for Together {
             left_out,
             hierarchy_time: kernels.map(|kernel| kernel.hierarchy_time).sum(),
         };
-        let tile_occupancy = members.into_iter().find_map(|member| member.tile_occupancy);
-        Diagnostics { kernel, tile_occupancy, ..Diagnostics::default() }
+        Diagnostics { kernel, ..Diagnostics::default() }
     }
 
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {

@@ -42,10 +42,6 @@ pub(super) fn render<'a>(
             }
             Event::Status(_, status) if status.phase.is_over() => {}
             Event::Status(progressive, status) => {
-                assert!(
-                    render.crashes_at.is_none_or(|samples| status.samples_per_pixel < samples),
-                    "injected fault"
-                );
                 let warning = keeper.as_mut().and_then(|keeper| keeper.look(progressive, status));
                 warning.iter().for_each(|warning| display.warn(warning));
                 show(&mut display, &render.plan, status, begin.elapsed());

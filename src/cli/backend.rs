@@ -3,7 +3,7 @@
 use super::values::{Auto, parse_isa, parse_simd, whole};
 use crate::backends::BackendChoice;
 use crate::render_cpu::{CpuOptions, Isa};
-use crate::render_gpu::{Fault, FaultInjection, GpuOptions, InjectionPoint};
+use crate::render_gpu::GpuOptions;
 use clap::error::ErrorKind;
 use clap::{ArgMatches, Args, Command, FromArgMatches, ValueEnum};
 
@@ -35,18 +35,6 @@ struct BackendFlags {
     /// CPU threads, 1 to 1024 [default: one per core]
     #[arg(long, value_name = "COUNT", value_parser = whole::<usize>(1..=1024))]
     threads: Option<usize>,
-    /// Lose the GPU after this many dispatches, so that the CPU takes over (fault injection)
-    #[arg(long, value_name = "DISPATCHES", group = "fault")]
-    simulate_device_lost: Option<u64>,
-    /// Make an invalid call after this many dispatches (fault injection)
-    #[arg(long, value_name = "DISPATCHES", hide = true, group = "fault")]
-    simulate_invalid_call: Option<u64>,
-    /// Make the GPU unresponsive for 10 s after this many dispatches (fault injection)
-    #[arg(long, value_name = "DISPATCHES", hide = true, group = "fault")]
-    simulate_hang: Option<u64>,
-    /// Make the CPU tracer panic after this many tiles (fault injection)
-    #[arg(long, value_name = "TILES", hide = true)]
-    simulate_panic: Option<u64>,
 }
 
 /// The flags that choose a device, for commands and windows that ask whether any is given.
@@ -55,30 +43,17 @@ pub(super) const FLAGS: [&str; 5] = ["device", "adapter", "simd", "isa", "thread
 impl BackendFlags {
     fn choice(self) -> Result<BackendChoice, String> {
         let (isa, lanes, threads) = (self.isa, self.simd, self.threads);
-        let cpu =
-            CpuOptions { isa, lanes, threads, panics_after: self.simulate_panic, ..CpuOptions::default() };
-        let injections = [
-            (self.simulate_device_lost, Fault::Lost),
-            (self.simulate_invalid_call, Fault::Invalid),
-            (self.simulate_hang, Fault::Hang),
-        ];
-        let point = InjectionPoint::Dispatch;
-        let injection = injections
-            .into_iter()
-            .find_map(|(after, fault)| Some(FaultInjection { fault, point, after: after? }));
-        let gpu = GpuOptions { injection, ..GpuOptions::of_adapter(self.adapter.as_deref()) };
+        let cpu = CpuOptions { isa, lanes, threads, ..CpuOptions::default() };
+        let gpu = GpuOptions::of_adapter(self.adapter.as_deref());
         // Flags that only one kind of device understands.
-        let (for_gpu, for_packets) =
-            (gpu.adapter.is_some() || injection.is_some(), lanes.is_some() || isa.is_some());
+        let (for_gpu, for_packets) = (gpu.adapter.is_some(), lanes.is_some() || isa.is_some());
         let device =
             self.device.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
         let refuse = |flags: &str, limit: &str| {
             Err(format!("{flags} cannot be used with --device {device}: {limit}; leave one of them out"))
         };
         match self.device {
-            Device::Cpu | Device::Reference if for_gpu => {
-                refuse("--adapter or --simulate", "it applies only to the GPU")
-            }
+            Device::Cpu | Device::Reference if for_gpu => refuse("--adapter", "it applies only to the GPU"),
             Device::Reference if for_packets => refuse("--simd or --isa", "the reference is scalar"),
             Device::Reference => Ok(BackendChoice::Reference { threads }),
             Device::Cpu => Ok(BackendChoice::Cpu(cpu)),
@@ -143,7 +118,6 @@ mod tests {
         for (flags, parts) in [
             ("--device cpu --adapter some", ["--adapter", "the GPU"]),
             ("--device reference --adapter some", ["--adapter", "the GPU"]),
-            ("--device cpu --simulate-invalid-call 2", ["--simulate", "the GPU"]),
             ("--device reference --isa portable", ["--isa", "reference"]),
             ("--device reference --simd 4", ["--simd", "reference"]),
         ] {

@@ -45,9 +45,6 @@ pub(super) struct RenderFlags {
     /// Write the times of the window's frames to a file
     #[arg(long, value_name = "FILE", hide = true)]
     pub frame_log: Option<PathBuf>,
-    /// Panic once the film has this many samples per pixel (fault injection)
-    #[arg(long, value_name = "SAMPLES", hide = true, conflicts_with = "AnimationFlags")]
-    pub simulate_crash: Option<u64>,
     /// Show progress on standard error; auto: if it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,
@@ -170,8 +167,6 @@ pub struct WindowOptions {
     pub draw_with: DrawWith,
     /// File for the times of the window's frames.
     pub frame_log: Option<PathBuf>,
-    /// Samples per pixel at which the program panics (fault injection).
-    pub crashes_at: Option<u64>,
 }
 
 /// Options of `--batch`.
@@ -199,8 +194,6 @@ pub struct BatchOptions {
     pub backend: BackendChoice,
     pub progress: ProgressChoice,
     pub json: Option<PathBuf>,
-    /// Samples per pixel at which the program panics (fault injection).
-    pub crashes_at: Option<u64>,
 }
 
 impl BatchOptions {
@@ -291,7 +284,6 @@ fn window(flags: RenderFlags, opened: Option<&Path>, matches: &ArgMatches) -> Re
         state_directory: None,
         draw_with: flags.draw_with,
         frame_log: flags.frame_log,
-        crashes_at: flags.simulate_crash,
         backend: flags.backend,
     })
 }
@@ -341,7 +333,6 @@ fn batch(flags: RenderFlags) -> Result<BatchOptions> {
         backend: flags.backend,
         progress: flags.progress,
         json: flags.files.json,
-        crashes_at: flags.simulate_crash,
     })
 }
 

@@ -4,7 +4,7 @@
 pub struct HeatScale {
     /// Quantity and unit.
     pub title: &'static str,
-    /// Values at the two ends. The scale is logarithmic unless it begins at 0.
+    /// Values at the two ends of the scale, which is logarithmic.
     limits: [f64; 2],
     /// Parts between the labels of a legend.
     parts: u8,
@@ -34,9 +34,6 @@ impl HeatScale {
 
     pub const RAYS: HeatScale = HeatScale { title: "rays per path", limits: [1.0, 32.0], parts: 5 };
 
-    pub const OCCUPANCY: HeatScale =
-        HeatScale { title: "share of lanes in use", limits: [0.0, 1.0], parts: 4 };
-
     /// Luminance, from `2^low` to `2^high`.
     pub fn luminance([low, high]: [f64; 2]) -> HeatScale {
         HeatScale { title: "luminance, linear", limits: [low.exp2(), high.exp2()], parts: 4 }
@@ -45,23 +42,14 @@ impl HeatScale {
     /// Values with labels for a legend, evenly spaced from end to end.
     pub fn marks(&self) -> Vec<(f64, String)> {
         let [low, high] = self.limits;
-        let value = |part: u8| match f64::from(part) / f64::from(self.parts) {
-            share if low == 0.0 => share * high,
-            share => low * (high / low).powf(share),
-        };
+        let value = |part: u8| low * (high / low).powf(f64::from(part) / f64::from(self.parts));
         (0..=self.parts).map(value).map(|value| (value, short(value))).collect()
     }
 
     /// Position of a value on the scale, `0..=1`.
     pub fn place(&self, value: f64) -> f64 {
         let [low, high] = self.limits;
-        if value <= low {
-            0.0
-        } else if low == 0.0 {
-            (value / high).min(1.0)
-        } else {
-            ((value / low).ln() / (high / low).ln()).min(1.0)
-        }
+        if value <= low { 0.0 } else { ((value / low).ln() / (high / low).ln()).min(1.0) }
     }
 
     pub fn colour(&self, value: f64) -> [u8; 3] {

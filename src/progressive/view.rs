@@ -2,7 +2,6 @@
 
 use crate::denoise::Denoised;
 use crate::film::Film;
-use crate::job::render::TileOccupancy;
 use crate::numbers::heat::HeatScale;
 use crate::stages::Transfer;
 use std::sync::Arc;
@@ -21,8 +20,6 @@ pub enum View {
     StandardError,
     /// The difference of each pixel from a reference. A film of another size is shown as a picture.
     Difference(Arc<ReferenceMeans>),
-    /// How full the packets were, per tile; dark where unknown.
-    Occupancy,
     /// The denoised picture in another view, in which [`View::StandardError`] is the error of the denoised picture. Another
     /// film is shown as it is.
     Denoised(Arc<Denoised>, Box<View>),
@@ -72,7 +69,6 @@ impl View {
             View::Luminance(stops) => Some(HeatScale::luminance(*stops)),
             View::StandardError => Some(HeatScale::ERROR),
             View::Difference(_) => Some(HeatScale::DIFFERENCE),
-            View::Occupancy => Some(HeatScale::OCCUPANCY),
             View::Denoised(_, view) => view.scale(),
         }
     }
@@ -89,11 +85,11 @@ impl View {
     }
 
     /// Resolves the film in this view: three bytes per pixel, top row first.
-    pub fn resolve(&self, film: &Film, transfer: Transfer, occupancy: Option<&TileOccupancy>) -> Vec<u8> {
+    pub fn resolve(&self, film: &Film, transfer: Transfer) -> Vec<u8> {
         let scale = self.scale().unwrap_or(HeatScale::ERROR);
-        let width = film.width() as usize;
         let heat = |value: &dyn Fn(usize) -> f64| -> Vec<u8> {
-            (0..width * film.height() as usize).flat_map(|pixel| scale.colour(value(pixel))).collect()
+            let pixels = film.width() as usize * film.height() as usize;
+            (0..pixels).flat_map(|pixel| scale.colour(value(pixel))).collect()
         };
         match self {
             View::StandardError => {
@@ -107,10 +103,6 @@ impl View {
                     root_mean_square([0, 1, 2].map(|i| mean[i] - f64::from(other[i])))
                 })
             }
-            View::Occupancy => heat(&|pixel| {
-                let at = [(pixel % width) as u32, (pixel / width) as u32];
-                occupancy.and_then(|tiles| tiles.share_at(at)).unwrap_or(0.0)
-            }),
             View::Luminance(_) => heat(&|pixel| luminance(film.mean(pixel))),
             View::Exposed(stops, channel) => {
                 let mut rgb8 = film.exposed(transfer, *stops);
@@ -120,13 +112,11 @@ impl View {
                 rgb8
             }
             View::Picture | View::Difference(_) => film.to_rgb8(transfer),
-            View::Denoised(denoised, view) if !denoised.is_of(film) => {
-                view.resolve(film, transfer, occupancy)
-            }
+            View::Denoised(denoised, view) if !denoised.is_of(film) => view.resolve(film, transfer),
             View::Denoised(denoised, view) if **view == View::StandardError => {
                 heat(&|pixel| f64::from(denoised.errors[pixel]))
             }
-            View::Denoised(denoised, view) => view.resolve(&denoised.film, transfer, occupancy),
+            View::Denoised(denoised, view) => view.resolve(&denoised.film, transfer),
         }
     }
 }
@@ -177,7 +167,7 @@ mod tests {
         let off = |by: [f32; 3]| {
             let means = vec![by.map(|x| 1.0 + x)];
             let view = View::Difference(Arc::new(ReferenceMeans { means, ..ReferenceMeans::of(&film) }));
-            view.resolve(&film, Transfer::Linear, None)
+            view.resolve(&film, Transfer::Linear)
         };
         assert_eq!(off([0.01, -0.01, 0.01]), middle);
         // All of the difference in one channel: the root mean square is the same.
@@ -187,22 +177,22 @@ mod tests {
             noisy.halves_mut()[half][0] = PixelSum([(k << 24) / 100; 3]);
         }
         noisy.record(0..2, 0).unwrap();
-        assert_eq!(View::StandardError.resolve(&noisy, Transfer::Linear, None), middle);
+        assert_eq!(View::StandardError.resolve(&noisy, Transfer::Linear), middle);
     }
 
     #[test]
     fn views_show_what_they_say() {
         let film = film(1, 1);
-        let shown = |view: View, tiles| view.resolve(&film, Transfer::Linear, tiles);
-        assert_eq!(shown(View::StandardError, None), HeatScale::ERROR.colour(0.0));
+        let shown = |view: View| view.resolve(&film, Transfer::Linear);
+        assert_eq!(shown(View::StandardError), HeatScale::ERROR.colour(0.0));
         let same = View::Difference(Arc::new(ReferenceMeans::of(&film)));
-        assert_eq!(shown(same, None), HeatScale::ERROR.colour(0.0));
+        assert_eq!(shown(same), HeatScale::ERROR.colour(0.0));
         let far = ReferenceMeans { means: vec![[0.0; 3]], ..ReferenceMeans::of(&film) };
-        assert_eq!(shown(View::Difference(Arc::new(far)), None), HeatScale::ERROR.colour(1.0));
+        assert_eq!(shown(View::Difference(Arc::new(far))), HeatScale::ERROR.colour(1.0));
         let other_size = ReferenceMeans { width: 2, means: vec![[0.0; 3]; 2], ..ReferenceMeans::of(&film) };
         let picture = film.to_rgb8(Transfer::Linear);
-        assert_eq!(shown(View::Difference(Arc::new(other_size)), None), picture);
-        assert_eq!(shown(View::Picture, None), picture);
+        assert_eq!(shown(View::Difference(Arc::new(other_size))), picture);
+        assert_eq!(shown(View::Picture), picture);
     }
 
     #[test]
@@ -211,21 +201,11 @@ mod tests {
         // Luminance: 0.7152 / 4 + 0.0722 / 4 + 0.2126 / 4 = 1/4, the middle of the scale.
         film.halves_mut()[0][0] = PixelSum([1 << 22; 3]);
         film.record(0..1, 0).unwrap();
-        let shown = |view: View| view.resolve(&film, Transfer::Linear, None);
+        let shown = |view: View| view.resolve(&film, Transfer::Linear);
         assert_eq!(shown(View::Luminance([-8.0, 4.0])), [159, 42, 99]);
         assert_eq!([shown(View::Exposed(1.0, None)), shown(View::Exposed(-1.0, None))], [[128; 3], [32; 3]]);
         let primaries = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         assert_eq!(primaries.map(luminance), [0.2126, 0.7152, 0.0722]);
-    }
-
-    #[test]
-    fn occupancy_is_shown_tile_by_tile() {
-        let tiles = TileOccupancy { side: 2, columns: 2, tiles: vec![[1, 4], [3, 3]] };
-        let shown = View::Occupancy.resolve(&Film::new(3, 1, 1), Transfer::Linear, Some(&tiles));
-        let [quarter, full] = [0.25, 1.0].map(|share| HeatScale::OCCUPANCY.colour(share));
-        assert_eq!(shown, [quarter, quarter, full].concat());
-        let nothing = View::Occupancy.resolve(&Film::new(1, 1, 1), Transfer::Linear, None);
-        assert_eq!(nothing, HeatScale::OCCUPANCY.colour(0.0));
     }
 
     #[test]

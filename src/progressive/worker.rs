@@ -84,9 +84,8 @@ impl Worker {
 
     fn show(&mut self) {
         if let Some(render) = &mut self.render {
-            let renderer = self.backend.as_ref().map(|(_, renderer)| renderer.as_ref());
             let shown = guarded("the picture", || {
-                render.show(&self.shared, &self.view, renderer);
+                render.show(&self.shared, &self.view);
                 Ok(())
             });
             render.complain(shown);

@@ -15,8 +15,6 @@ pub struct CpuOptions {
     pub low_priority: bool,
     /// Whether every job gets the general kernel, to measure the gain of specialisation.
     pub general: bool,
-    /// Panics in the middle of a tile, after this many other tiles (fault injection).
-    pub panics_after: Option<u64>,
 }
 
 /// Options that this machine cannot satisfy.

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 /// A job's prepared scene and kernel in one of the two precisions.
@@ -102,8 +102,6 @@ impl TracedTile {
 pub(super) struct PassTracer<'a> {
     pub threads: &'a Pool,
     pub prepared: &'a Prepared,
-    /// Tiles left before one in which the tracer panics (fault injection).
-    pub tiles_to_panic: Option<&'a AtomicU64>,
 }
 
 impl PassTracer<'_> {
@@ -169,7 +167,6 @@ impl PassTracer<'_> {
             let work = Work::new(&blocks, order, tile.corner, tile.rows);
             let mut traced = TracedTile { expected: work.expected(), ..TracedTile::default() };
             let mut work = match pass.purpose {
-                Purpose::Add if self.is_to_panic() => work.sabotaged(),
                 Purpose::Add => work,
                 Purpose::Withdraw(added) if added[index] == 0 => return traced,
                 Purpose::Withdraw(added) => work.withdrawing(added[index]),
@@ -189,10 +186,6 @@ impl PassTracer<'_> {
             traced
         };
         self.threads.install(|| tiles.into_par_iter().enumerate().map(trace_tile).collect())
-    }
-
-    fn is_to_panic(&self) -> bool {
-        self.tiles_to_panic.is_some_and(|left| left.fetch_sub(1, Ordering::Relaxed) == 0)
     }
 }
 

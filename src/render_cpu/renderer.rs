@@ -4,7 +4,7 @@ use super::broadcast::BroadcastScene;
 use super::isa::Isa;
 use super::kernels;
 use super::options::{CpuError, CpuOptions};
-use super::pass::{Pass, PassTracer, Prepared, Purpose, StopRequest, TracedTile, describe_missing};
+use super::pass::{Pass, PassTracer, Prepared, Purpose, StopRequest, describe_missing};
 use super::priority::give_way;
 use super::rebuild::Rebuild;
 use super::tiles::tile_side;
@@ -12,13 +12,12 @@ use super::work::TileStats;
 use crate::film::Film;
 use crate::job::render::{
     BackendInfo, Control, Diagnostics, KernelInfo, Outcome, RenderError, RenderJob, Renderer, Stats,
-    TileOccupancy,
 };
 use crate::kernel::{Features, Real, parts};
 use crate::prepared::PreparedScene;
 use crate::system::threads::Pool;
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// The renderer on the CPU.
@@ -32,10 +31,7 @@ pub struct CpuRenderer {
     job: Option<RenderJob>,
     pub(super) prepared: Option<Prepared>,
     pub(super) rebuild: Rebuild,
-    occupancy: TileOccupancy,
     messages: Vec<String>,
-    /// Tiles left before one in which the tracer panics (fault injection).
-    tiles_to_panic: Option<AtomicU64>,
 }
 
 impl CpuRenderer {
@@ -66,7 +62,7 @@ impl CpuRenderer {
     }
 
     fn with_packets(packets: Option<(Isa, usize)>, options: CpuOptions) -> Result<Self, CpuError> {
-        let CpuOptions { threads, low_priority, general, panics_after, .. } = options;
+        let CpuOptions { threads, low_priority, general, .. } = options;
         let builder = rayon::ThreadPoolBuilder::new()
             .num_threads(threads.unwrap_or(0))
             .thread_name(|index| format!("trace-{index}"))
@@ -88,8 +84,6 @@ impl CpuRenderer {
             job: None,
             prepared: None,
             rebuild: Rebuild::new(),
-            occupancy: TileOccupancy::default(),
-            tiles_to_panic: panics_after.map(AtomicU64::new),
             messages: Vec::new(),
         })
     }
@@ -105,19 +99,13 @@ impl Renderer for CpuRenderer {
     }
 
     fn diagnostics(&self) -> Diagnostics {
-        Diagnostics {
-            kernel: self.kernel(),
-            tile_occupancy: self.packets.map(|_| self.occupancy.clone()),
-            device_time: None,
-            stops_early: true,
-        }
+        Diagnostics { kernel: self.kernel(), device_time: None, stops_early: true }
     }
 
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
         if self.prepared.is_some() && self.job.as_ref() == Some(job) {
             return Ok(());
         }
-        self.occupancy = TileOccupancy::default();
         let before = self.job.take();
         let (single, double) = match self.prepared.take() {
             Some(Prepared::Single(old, _)) => (Some(old.prepared), None),
@@ -195,7 +183,6 @@ impl Renderer for CpuRenderer {
         let paths = pixels * range.end.saturating_sub(range.start);
         let tiles = traced.iter().map(|tile| tile.stats).fold(TileStats::default(), TileStats::plus);
         film.record(range, tiles.rejected)?;
-        self.note_occupancy(side, film.width().div_ceil(side), &traced);
         let trace = start.elapsed();
         self.begin_better_hierarchy(job, trace);
         Ok(Outcome::from(Stats {
@@ -224,8 +211,7 @@ impl CpuRenderer {
     }
 
     fn pass_tracer(&self) -> Option<PassTracer<'_>> {
-        let prepared = self.prepared.as_ref()?;
-        Some(PassTracer { threads: &self.threads, prepared, tiles_to_panic: self.tiles_to_panic.as_ref() })
+        Some(PassTracer { threads: &self.threads, prepared: self.prepared.as_ref()? })
     }
 
     fn renewed<R: Real>(
@@ -256,16 +242,6 @@ impl CpuRenderer {
             let threads = self.threads.count();
             self.rebuild.note_pass(traced, threads, &broadcast.prepared, job, self.low_priority);
         }
-    }
-
-    fn note_occupancy(&mut self, side: u32, columns: u32, traced: &[TracedTile]) {
-        let tiles = &mut self.occupancy.tiles;
-        tiles.resize(traced.len(), [0; 2]);
-        for (tile, TracedTile { stats, .. }) in tiles.iter_mut().zip(traced) {
-            tile[0] += stats.rays;
-            tile[1] += stats.offered_lanes;
-        }
-        (self.occupancy.side, self.occupancy.columns) = (side, columns);
     }
 }
 

@@ -151,7 +151,7 @@ pub struct Work<'film> {
     order: &'film RefillOrder,
     /// Position of the tile's upper left pixel in the picture.
     corner: [u32; 2],
-    rows: TileRows<'film>,
+    pub(super) rows: TileRows<'film>,
     next_block: usize,
     next_place: usize,
     finished: u64,
@@ -184,17 +184,6 @@ impl<'film> Work<'film> {
     /// Blocks in total, over all pixels.
     pub fn expected(&self) -> u64 {
         self.blocks.len() as u64 * self.order.len() as u64
-    }
-
-    /// Empties the last row of the half that the last block adds to, so that a kernel panics in the middle of the tile
-    /// (fault injection).
-    pub fn sabotaged(mut self) -> Self {
-        let half = self.blocks.last().map_or(0, |block| block.half);
-        let end = (half as usize + 1) * self.order.height as usize;
-        if let Some(row) = self.rows.get_mut(end.saturating_sub(1)) {
-            *row = &mut [];
-        }
-        self
     }
 
     /// Maximum number of steps that lanes wait for a refill. A refill takes nearly as long for one lane as for several, so

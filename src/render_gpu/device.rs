@@ -1,8 +1,8 @@
 //! The device, and how it can fail.
 
+use super::GpuError;
 use super::adapter::{AdapterInfo, STORAGE_BUFFERS, all_adapters};
 use super::options::COMPILING_PATIENCE;
-use super::{Fault, GpuError};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -96,15 +96,10 @@ struct Silence {
     waited: Duration,
     /// Whether the driver may be compiling.
     compiles: bool,
-    /// End of an injected fault during which the device does not respond.
-    simulated_until: Option<Instant>,
 }
 
 /// How often a wait for the device checks whether the result is still wanted.
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
-
-/// How long the device does not respond during an injected fault.
-const INJECTED_SILENCE: Duration = Duration::from_secs(10);
 
 impl Gpu {
     /// Opens the first adapter whose name, backend or driver contains `wanted` (ignoring case), or the best adapter if
@@ -213,26 +208,6 @@ impl Gpu {
         self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
     }
 
-    /// Breaks the device, as an injected fault does.
-    pub fn break_by(&self, fault: Fault) {
-        match fault {
-            Fault::Lost => self.device.destroy(),
-            Fault::Hang => self.silence().simulated_until = Some(Instant::now() + INJECTED_SILENCE),
-            // The dispatch code injects these faults.
-            Fault::Short | Fault::AlwaysShort => {}
-            // Copies more than the buffer can hold.
-            Fault::Invalid => {
-                let small = self.device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("injection"),
-                    size: 16,
-                    usage: wgpu::BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                });
-                self.queue.write_buffer(&small, 16, &[0; 16]);
-            }
-        }
-    }
-
     fn silence(&self) -> MutexGuard<'_, Silence> {
         self.silence.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -278,11 +253,6 @@ impl Gpu {
 
     /// Waits briefly.
     fn poll(&self, submission: &wgpu::SubmissionIndex) -> Result<wgpu::PollStatus, wgpu::PollError> {
-        let simulated_until = self.silence().simulated_until;
-        if simulated_until.is_some_and(|until| Instant::now() < until) {
-            std::thread::sleep(POLL_INTERVAL);
-            return Err(wgpu::PollError::Timeout);
-        }
         self.device.poll(wgpu::PollType::Wait {
             submission_index: Some(submission.clone()),
             timeout: Some(POLL_INTERVAL),

@@ -3,7 +3,6 @@
 use super::film_buffers::FilmBuffers;
 use super::kernel::Kernel;
 use super::layout::{GpuJob, WORKGROUP_SIZE, tile_size};
-use super::options::InjectionPoint;
 use super::scene::SceneData;
 use super::scene::{ITERATION_LIMIT, iterations_over_lists};
 use super::shader_source::EntryPoint;
@@ -48,8 +47,6 @@ impl GpuRenderer {
             Some(loaded) if loaded.job == *job => Ok(loaded),
             old => {
                 self.dispatches.discard();
-                self.inject(InjectionPoint::Prepare, self.preparations);
-                self.preparations += 1;
                 self.load(job, old, cancel)
             }
         }

@@ -20,9 +20,7 @@ pub mod shader_source;
 mod trace;
 
 pub use adapter::{AdapterInfo, BUSY_THREADS_OF_SOFTWARE, SOFTWARE_THREADS_IN_STEP, adapters};
-pub use options::{
-    BATCH_TARGET, Fault, FaultInjection, GpuError, GpuOptions, GpuReport, INTERACTIVE_TARGET, InjectionPoint,
-};
+pub use options::{BATCH_TARGET, GpuError, GpuOptions, GpuReport, INTERACTIVE_TARGET};
 pub use scene::{Exported, ITERATION_LIMIT, SHARED_BLOCK};
 pub use schedule::{BUDGET_LIMITS, FIRST_PATHS, GROWTH_LIMIT};
 
@@ -46,8 +44,6 @@ pub struct GpuRenderer {
     kernels: Kernels,
     dispatches: Dispatches,
     loaded: Option<Loaded>,
-    /// Number of jobs prepared.
-    preparations: u64,
     /// Number of readbacks requested.
     readbacks: u64,
     messages: Vec<String>,
@@ -76,7 +72,6 @@ impl GpuRenderer {
             kernels: Kernels::default(),
             dispatches,
             loaded: None,
-            preparations: 0,
             readbacks: 0,
             messages,
         })
@@ -85,6 +80,11 @@ impl GpuRenderer {
     /// The adapter in use.
     pub fn adapter(&self) -> &AdapterInfo {
         &self.gpu.adapter
+    }
+
+    /// The open device.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.gpu.device
     }
 
     /// Figures of dispatches and readbacks so far.
@@ -127,17 +127,6 @@ impl GpuRenderer {
     fn discard(&mut self, loaded: &mut Loaded) {
         self.dispatches.discard();
         loaded.film.discard(&self.gpu);
-    }
-
-    /// Injects the fault that is due at the `count`th event of this kind, by breaking the device.
-    fn inject(&self, point: InjectionPoint, count: u64) -> Option<Fault> {
-        let is_due = |injection: &FaultInjection| {
-            let lasts = injection.fault == Fault::AlwaysShort;
-            injection.point == point && (injection.after == count || lasts && injection.after < count)
-        };
-        let injection = self.options.injection.filter(is_due)?;
-        self.gpu.break_by(injection.fault);
-        Some(injection.fault)
     }
 
     /// Traces samples and adds them to the film, or leaves them on the device if they `may_defer`.

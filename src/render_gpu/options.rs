@@ -15,42 +15,6 @@ pub const PATIENCE: Duration = Duration::from_secs(8);
 /// Factor for the wait at a kernel's first dispatch, when the driver may have to compile it.
 pub const COMPILING_PATIENCE: u32 = 6;
 
-/// A way in which a device can fail in the middle of a render.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
-    /// The device is lost: it was unplugged or reset, or its driver was.
-    Lost,
-    /// The device reports an error: it is out of memory, or it received an invalid request.
-    Invalid,
-    /// The device does not respond for 10 s.
-    Hang,
-    /// The device reports a dispatch as done but has skipped all of it. Only at [`InjectionPoint::Dispatch`].
-    Short,
-    /// Like [`Fault::Short`], for every dispatch from then on.
-    AlwaysShort,
-}
-
-/// Where a fault can be injected.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum InjectionPoint {
-    /// Before a job is prepared.
-    Prepare,
-    /// Before a dispatch is submitted.
-    #[default]
-    Dispatch,
-    /// Before a readback of the film is requested.
-    Readback,
-}
-
-/// A fault that is injected on purpose, to test that a render survives it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FaultInjection {
-    pub fault: Fault,
-    pub point: InjectionPoint,
-    /// How many events of that kind precede it.
-    pub after: u64,
-}
-
 /// Options for opening and using an adapter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GpuOptions {
@@ -70,7 +34,6 @@ pub struct GpuOptions {
     pub film_limit: Option<u64>,
     /// How long to wait for the device before giving it up.
     pub patience: Duration,
-    pub injection: Option<FaultInjection>,
 }
 
 impl Default for GpuOptions {
@@ -84,7 +47,6 @@ impl Default for GpuOptions {
             iteration_limit: None,
             film_limit: None,
             patience: PATIENCE,
-            injection: None,
         }
     }
 }

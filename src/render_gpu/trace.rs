@@ -3,10 +3,9 @@
 use super::dispatches::{BoundDispatch, CAUTION_LIMIT, CAUTION_SHIFT, Incomplete};
 use super::layout::{GpuBlock, GpuDispatch, WORKGROUP_SIZE, tile_size};
 use super::loaded::Loaded;
-use super::options::InjectionPoint;
 use super::scene::SHARED_BLOCK;
 use super::schedule::Blocks;
-use super::{Fault, GpuRenderer, failed};
+use super::{GpuRenderer, failed};
 use crate::film::Film;
 use crate::job::render::{RenderError, Stats};
 use std::ops::Range;
@@ -97,7 +96,7 @@ impl GpuRenderer {
                 paths: u64::from(tile_count) * TILE_PIXELS * samples,
                 samples: tiles.pixels_within(first_tile..first_tile + tile_count) * samples,
             };
-            self.submit(slot, dispatch).map_err(failed)?;
+            self.dispatches.submit(&self.gpu, slot, dispatch, 0).map_err(failed)?;
             first_tile += tile_count;
             if loaded.film.is_reading_back() {
                 stats.add(&loaded.film.finish_readback(&self.gpu, film)?);
@@ -106,19 +105,9 @@ impl GpuRenderer {
         Ok(stats)
     }
 
-    /// Submits a new dispatch, unless an injected fault is due.
-    fn submit(&mut self, slot: usize, mut dispatch: BoundDispatch) -> Result<(), String> {
-        let fault = self.inject(InjectionPoint::Dispatch, self.dispatches.count);
-        if matches!(fault, Some(Fault::Short | Fault::AlwaysShort)) {
-            dispatch.parameters.block_count = 0;
-        }
-        self.dispatches.submit(&self.gpu, slot, dispatch, 0)
-    }
-
     /// Requests a readback of the film, after the dispatches in flight.
     pub(super) fn read_film_back(&mut self, loaded: &mut Loaded) -> Result<(), Incomplete> {
         if !loaded.film.is_reading_back() {
-            self.inject(InjectionPoint::Readback, self.readbacks);
             self.readbacks += 1;
             self.dispatches.drain(&self.gpu, None)?;
             loaded.film.request_readback(&self.gpu);

@@ -205,8 +205,6 @@ table! {
     KeptDock "Kept pictures", "Opens the dock with the pictures that you have kept", keys(SHIFT, Key::M),
         off(no_presentation), on(|f| f.model.remembered.dock == Some(Dock::Kept)),
         also("slot snapshot compare");
-    LanesDock "Lanes", "Opens the dock with what each lane does, step by step", key(Key::N),
-        off(no_presentation), on(|f| f.model.remembered.dock == Some(Dock::Lanes)), also("simd avx packet");
     ErrorDock "Error", "Opens the dock with the error over time", key(Key::P), off(no_presentation),
         on(|f| f.model.remembered.dock == Some(Dock::Error)), also("plot convergence noise quality");
     Panels "Only the picture", "Hides all panels; again shows them", key(Key::Tab),

@@ -15,7 +15,6 @@ pub const RECENT_LIMIT: usize = 8;
 pub enum Dock {
     Path,
     Kept,
-    Lanes,
     Error,
 }
 
@@ -122,11 +121,6 @@ impl Stored {
 }
 
 impl Remembered {
-    /// Lanes per packet: the chosen number, or as many as a register holds.
-    pub fn lanes_in_use(&self) -> usize {
-        self.lanes.unwrap_or_else(|| device::best_isa().native_lanes())
-    }
-
     /// Remembers a file that was opened or saved. A path that is not Unicode is not remembered: it could not be stored.
     pub fn note_recent(&mut self, path: &Path) {
         let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());

@@ -21,23 +21,14 @@ pub enum Show {
     Bounces,
     /// Standard error of each pixel.
     Error,
-    /// Share of lanes in use.
-    Occupancy,
     /// Luminance in false colours.
     Luminance,
 }
 
 impl Show {
     /// All views.
-    pub const ALL: [Show; 7] = [
-        Show::Picture,
-        Show::Normals,
-        Show::Albedo,
-        Show::Bounces,
-        Show::Error,
-        Show::Occupancy,
-        Show::Luminance,
-    ];
+    pub const ALL: [Show; 6] =
+        [Show::Picture, Show::Normals, Show::Albedo, Show::Bounces, Show::Error, Show::Luminance];
 
     /// The view that a sight needs.
     pub fn of_means(means: Means) -> Show {
@@ -68,9 +59,6 @@ impl Show {
                 "How uncertain each pixel still is (standard error)",
                 "view grain quality spp samples",
             ],
-            Show::Occupancy => {
-                ["Lanes at work", "How full the lanes of the processor were", "view simd avx packet"]
-            }
             Show::Luminance => [
                 "Brightness",
                 "How bright each pixel is, in false colours with a scale",
@@ -89,7 +77,7 @@ impl Show {
             Show::Normals => Some(Layer::Normals),
             Show::Albedo => Some(Layer::Albedo),
             Show::Bounces => Some(Layer::RaysPerPath),
-            Show::Picture | Show::Error | Show::Occupancy | Show::Luminance => None,
+            Show::Picture | Show::Error | Show::Luminance => None,
         }
     }
 
@@ -97,7 +85,6 @@ impl Show {
     pub fn of_film(self, tone: &Tone) -> View {
         match self {
             Show::Error => View::StandardError,
-            Show::Occupancy => View::Occupancy,
             Show::Luminance => View::Luminance(tone.range),
             Show::Picture | Show::Normals | Show::Albedo | Show::Bounces => tone.of_picture(),
         }
@@ -109,7 +96,6 @@ impl Show {
             Show::Luminance => Some(HeatScale::luminance(tone.range)),
             Show::Bounces => Some(HeatScale::RAYS),
             Show::Error => Some(HeatScale::ERROR),
-            Show::Occupancy => Some(HeatScale::OCCUPANCY),
             Show::Picture | Show::Normals | Show::Albedo => None,
         }
     }

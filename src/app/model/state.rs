@@ -183,21 +183,12 @@ impl Model {
         let (has_error, shading) = (self.document.settings.estimate_error, self.document.rules().shading);
         match show {
             Show::Error if !has_error => no("The film has one half; switch on Estimate error"),
-            Show::Normals | Show::Albedo | Show::Bounces | Show::Occupancy
-                if let Some(reason) = self.document.no_rays() =>
-            {
+            Show::Normals | Show::Albedo | Show::Bounces if let Some(reason) = self.document.no_rays() => {
                 no(reason)
             }
             Show::Bounces if shading != Shading::Path => {
                 no("In this stage rays end at their first hit, so each path is one ray")
             }
-            Show::Occupancy => match self.remembered.device {
-                Device::Gpu => no("The graphics adapter traces without packets; switch to the CPU"),
-                Device::Reference => {
-                    no("The reference traces one ray at a time, without packets; switch to the CPU")
-                }
-                Device::Cpu | Device::Both => None,
-            },
             _ => None,
         }
     }

@@ -174,10 +174,8 @@ impl ViewState {
             _ => self.show.of_film(&self.tone),
         };
         match self.denoised_of(run) {
-            Some(denoised) if !matches!(view, View::Occupancy) => {
-                View::Denoised(Arc::clone(denoised), Box::new(view))
-            }
-            _ => view,
+            Some(denoised) => View::Denoised(Arc::clone(denoised), Box::new(view)),
+            None => view,
         }
     }
 

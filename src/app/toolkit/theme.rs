@@ -58,16 +58,14 @@ colours! {
     warn 0xE8BA5C 0x7D5200
     /// An error.
     bad 0xF47A70 0xB0241C
-    /// Data: from the camera, or CPU.
+    /// Data: the CPU.
     first 0x5C96FF 0x2F6FE0
-    /// Data: off matte, or GPU.
+    /// Data: the GPU.
     second 0xEB9438 0xD9791A
-    /// Data: off metal, or expected.
+    /// Data: expected.
     third 0xB4B4BE 0x8C8C98
-    /// Data: glass, or both.
+    /// Data: both.
     fourth 0x46C396 0x1F9A6B
-    /// Data: waits.
-    waits 0x2E3238 0xDCDDDD
 }
 
 /// The colours of the theme that a part of the window has.

@@ -1,4 +1,4 @@
-//! The dock under the picture: a path, the kept pictures, the lanes, and the error over time.
+//! The dock under the picture: a path, the kept pictures, and the error over time.
 
 use super::Tools;
 use crate::app::commands::{Command, PanelContext};
@@ -44,7 +44,6 @@ pub fn ui(ui: &mut Ui, model: &mut Model, tools: &mut Tools, cx: &PanelContext) 
                 match dock {
                     Dock::Path => tools.paths.ui(ui),
                     Dock::Kept => kept_ui(ui, model, cx),
-                    Dock::Lanes => tools.lanes.ui(ui, cx),
                     Dock::Error => plot::ui(ui, cx),
                 }
                 ui.take_available_space();
@@ -57,7 +56,6 @@ fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, cx: &PanelContext) {
     let tabs = [
         (Dock::Path, "Path", Command::ClearPaths),
         (Dock::Kept, "Kept pictures", Command::KeptDock),
-        (Dock::Lanes, "Lanes", Command::LanesDock),
         (Dock::Error, "Error", Command::ErrorDock),
     ];
     let left = |ui: &mut Ui| {

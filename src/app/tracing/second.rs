@@ -138,7 +138,7 @@ impl Second {
             {
                 let transfer = other.transfer();
                 other.inspect(move |film| {
-                    let rgb8 = view.resolve(film, transfer, None);
+                    let rgb8 = view.resolve(film, transfer);
                     answer.give(Ok((id, view, [film.width(), film.height()], rgb8)));
                 });
             }

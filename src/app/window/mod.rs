@@ -88,7 +88,7 @@ impl Window {
             (None, Some(path)) => Some((path, document.job(1)?)),
             (None, None) => None,
         };
-        let mut shell = Shell { crashes_at: options.crashes_at, ..Shell::default() };
+        let mut shell = Shell::default();
         if has_ended_early && !steps.is_empty() {
             shell.toasts.good("The last window ended early. This is the picture that it showed");
         }
@@ -197,9 +197,6 @@ impl Window {
         let shell = &mut self.shell;
         shell.frame_times.picture = begin.elapsed();
         let status = self.tracing.main.status();
-        if shell.crashes_at.is_some_and(|samples| status.samples_per_pixel >= samples) {
-            panic!("injected fault");
-        }
         if let Some(log) = &mut shell.frame_log {
             if let Some(begun) = pictured {
                 log.pictured(begun);
@@ -321,7 +318,7 @@ impl Window {
         if !autosave.has_failed() {
             shell.toasts.end_error("Autosave failed");
         }
-        tools.follow(context, model, &subject, is_moving);
+        tools.follow(context, model, &subject);
         if !has_second {
             model.view.end_comparison();
         }

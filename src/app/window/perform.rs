@@ -149,7 +149,6 @@ impl Window {
             }
             C::FocusControls => self.focus_next_panel(context),
             C::KeptDock => self.toggle_dock(Dock::Kept),
-            C::LanesDock => self.toggle_dock(Dock::Lanes),
             C::ErrorDock => self.toggle_dock(Dock::Error),
             C::Panels => self.toggle_panels(),
             C::Present => self.toggle_presentation(context),

@@ -23,8 +23,6 @@ pub struct Shell {
     pub is_dressed: bool,
     /// The window closes as soon as everything is saved.
     pub leaves_when_saved: bool,
-    /// Samples per pixel at which the program panics (fault injection).
-    pub crashes_at: Option<u64>,
     pub interrupt: Option<Arc<Interrupt>>,
 }
 

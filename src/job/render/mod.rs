@@ -188,26 +188,6 @@ pub struct KernelInfo {
     pub hierarchy_time: Duration,
 }
 
-/// Occupancy of packets in each tile of a picture.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct TileOccupancy {
-    /// Side of a tile in pixels.
-    pub side: u32,
-    /// Number of tiles in a row.
-    pub columns: u32,
-    /// Busy lanes and available lanes of each tile, summed over all intersections; row by row from the top.
-    pub tiles: Vec<[u64; 2]>,
-}
-
-impl TileOccupancy {
-    /// Share of lanes in use in the tile of a pixel, `0..=1`; `None` if nothing has been traced there.
-    pub fn share_at(&self, [x, y]: [u32; 2]) -> Option<f64> {
-        let side = self.side.max(1);
-        let [busy, offered] = *self.tiles.get((y / side * self.columns + x / side) as usize)?;
-        (offered > 0).then(|| busy as f64 / offered as f64)
-    }
-}
-
 /// Why samples could not be added to a film.
 #[derive(Debug, Error)]
 pub enum RenderError {
@@ -253,8 +233,6 @@ pub struct BackendInfo {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Diagnostics {
     pub kernel: KernelInfo,
-    /// Packet occupancy since the job's first pass; `None` if the renderer traces without packets.
-    pub tile_occupancy: Option<TileOccupancy>,
     /// Total time of all dispatches so far by the device's own clock; `None` without one.
     pub device_time: Option<Duration>,
     /// Whether the renderer acts on [`Control::stop`], so that stopping takes at most half the time of a pass.

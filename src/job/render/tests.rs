@@ -97,22 +97,3 @@ fn statistics_add_up() {
     let trace = 2 * trace;
     assert_eq!(sum, Stats { paths: 2, rays: 4, rejected: 6, busy_lanes: 8, offered_lanes: 10, trace });
 }
-
-#[test]
-fn lane_share_is_that_of_the_pixels_tile() {
-    // Two columns and two rows of tiles of 8 by 8 pixels; nothing has been traced in the last.
-    let tiles = vec![[1, 4], [2, 4], [3, 4], [0, 0]];
-    let occupancy = TileOccupancy { side: 8, columns: 2, tiles };
-    for (pixel, share) in [
-        ([0, 0], Some(0.25)),
-        ([7, 7], Some(0.25)),
-        ([8, 7], Some(0.5)),
-        ([15, 0], Some(0.5)),
-        ([7, 8], Some(0.75)),
-        ([8, 8], None),
-        ([0, 16], None),
-    ] {
-        assert_eq!(occupancy.share_at(pixel), share, "{pixel:?}");
-    }
-    assert_eq!(TileOccupancy::default().share_at([0, 0]), None);
-}

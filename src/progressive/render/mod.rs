@@ -333,23 +333,21 @@ impl Render {
     }
 
     /// Resolves a picture if one was requested and there is something new to show.
-    pub fn show(&mut self, shared: &Shared, view: &View, renderer: Option<&dyn Renderer>) {
+    pub fn show(&mut self, shared: &Shared, view: &View) {
         let samples = self.film.sample_count();
         let is_new = self.pictured_samples != Some(samples);
         if !is_new || samples == 0 || !shared.is_picture_wanted() || self.cancel.is_abandoned() {
             return;
         }
         self.pictured_samples = Some(samples);
-        let renderer = renderer.filter(|_| *view == View::Occupancy);
-        let occupancy = renderer.and_then(|renderer| renderer.diagnostics().tile_occupancy);
         let transfer = self.job.rules().transfer;
         // Previews are smoothed; heat maps show the film as it is.
         let is_smooth =
             self.plan.preview.is_some() && matches!(view, View::Picture | View::Exposed(.., None));
         let rgb8 = if is_smooth {
-            view.resolve(&self.film.smoothed(), transfer, None)
+            view.resolve(&self.film.smoothed(), transfer)
         } else {
-            view.resolve(&self.film, transfer, occupancy.as_ref())
+            view.resolve(&self.film, transfer)
         };
         let (width, height) = (self.film.width(), self.film.height());
         shared.put_picture(Picture { run: self.status.run, width, height, samples_per_pixel: samples, rgb8 });

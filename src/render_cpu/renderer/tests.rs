@@ -44,25 +44,6 @@ fn camera_move_keeps_hierarchy_and_film() {
 }
 
 #[test]
-fn the_tiles_add_up_to_the_picture() {
-    let job = small("three-spheres");
-    let mut renderer = CpuRenderer::new(CpuOptions::default()).expect("available");
-    let mut film = job.new_film();
-    let mut stats = Stats::default();
-    for range in [0..2, 2..4] {
-        stats.add(&renderer.accumulate(&job, range, &mut film, &AtomicBool::new(false)).expect("traced"));
-    }
-    let occupancy = renderer.diagnostics().tile_occupancy.expect("packets");
-    let sum = |which: usize| occupancy.tiles.iter().map(|tile| tile[which]).sum::<u64>();
-    assert_eq!([sum(0), sum(1)], [stats.busy_lanes, stats.offered_lanes]);
-    assert!(occupancy.share_at([19, 11]).is_some_and(|share| share > 0.0 && share <= 1.0));
-    assert_eq!(occupancy.share_at([0, 4000]), None);
-    renderer.prepare(&small("metals"), &AtomicBool::new(false)).expect("prepared");
-    assert!(renderer.diagnostics().tile_occupancy.expect("packets").tiles.is_empty());
-    assert_eq!(CpuRenderer::reference(Some(1)).expect("available").diagnostics().tile_occupancy, None);
-}
-
-#[test]
 fn sample_time_is_estimated_for_a_prepared_job() {
     let (job, never) = (small("three-spheres"), AtomicBool::new(false));
     let mut renderer = CpuRenderer::new(CpuOptions::default()).expect("available");
