@@ -92,3 +92,26 @@ impl<'a> Studio<'a> {
         Studio { backend, renderer: None, progressive, interrupt }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_of_the_onlooker_ends_the_render_and_keeps_its_film() {
+        let flags = ["--samples", "4294967295", "--device", "cpu"];
+        let options = crate::batch::tests::options(&flags);
+        let interrupt = Interrupt::unheard();
+        let Ok(mut studio) = Studio::open(&options.backend, &interrupt) else { panic!("no CPU") };
+        let (status, film) = studio.render(options.job.clone(), options.plan.clone(), None, |event| {
+            let has_samples = matches!(event, Event::Status(_, status) if status.samples_per_pixel > 0);
+            assert!(!has_samples, "a slip of the onlooker");
+        });
+        let reason = match status.phase {
+            Phase::Failed(reason) => reason,
+            phase => panic!("{phase:?}"),
+        };
+        assert!(reason.contains("a slip of the onlooker"), "{reason}");
+        assert!(film.is_some_and(|film| film.sample_count() > 0));
+    }
+}

@@ -6,6 +6,7 @@ use crate::job::recipe::Recipe;
 use crate::render_cpu::priority::NICENESS;
 use crate::scene::{Material, Sphere};
 use glam::DVec3;
+use std::sync::atomic::AtomicUsize;
 
 fn small(scene: &str) -> RenderJob {
     let mut recipe = Recipe::find(scene).expect("a built-in scene");
@@ -80,6 +81,36 @@ fn stopped_pass_is_whole_or_withdrawn() {
         assert!(film == if is_withdrawn { held.clone() } else { whole.clone() }, "{eighths} eighths");
         assert!(eighths > 0 || is_withdrawn, "it should be given up");
     }
+}
+
+/// The tracer panics in the middle of a tile.
+#[test]
+fn panic_in_a_tile_leaves_the_film_unchanged() {
+    let mut recipe = Recipe::find("three-spheres").expect("a built-in scene");
+    (recipe.settings.width, recipe.settings.height) = (100, 70);
+    let (job, never) = (recipe.job().expect("valid"), AtomicBool::new(false));
+    let mut renderer = CpuRenderer::new(CpuOptions::default()).expect("available");
+    let mut film = job.new_film();
+    renderer.accumulate(&job, 0..6, &mut film, &never).expect("traced");
+    let before = film.clone();
+    let Some(Prepared::Single(_, kernel)) = &mut renderer.prepared else { panic!("no packets") };
+    let whole = std::mem::replace(kernel, Box::new(|_, _| TileStats::default()));
+    let tiles = AtomicUsize::new(0);
+    *kernel = Box::new(move |scene, work| {
+        if tiles.fetch_add(1, Ordering::Relaxed) == 3 {
+            work.rows.last_mut().into_iter().for_each(|row| *row = &mut []);
+        }
+        whole(scene, work)
+    });
+    let error = renderer.accumulate(&job, 6..40, &mut film, &never).expect_err("a row is missing");
+    assert!(matches!(error, RenderError::Backend { backend: "cpu", .. }), "{error}");
+    assert!(error.to_string().contains("panicked"), "{error}");
+    assert!(film == before);
+    // The next attempt works.
+    renderer.accumulate(&job, 6..40, &mut film, &never).expect("traced");
+    let mut expected = job.new_film();
+    renderer.accumulate(&job, 0..40, &mut expected, &never).expect("traced");
+    assert!(film == expected);
 }
 
 #[cfg(target_os = "linux")]
