@@ -1,88 +1,132 @@
-//! Device faults in each phase of a render: the picture still becomes complete, and the user gets a message.
+//! A device that fails in the middle of a render: the CPU completes the picture, and no sample is lost or counted twice.
 
-use crate::common::gpu::{gpu, job_of};
+use crate::common::gpu::{cpu, go_on, gpu, job_of};
+use std::ops::Range;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
-use weekender::backends::BackendChoice;
-use weekender::job::render::{RenderJob, SamplerKind};
+use weekender::backends::{self, BackendChoice};
+use weekender::film::Film;
+use weekender::job::render::{
+    BackendInfo, Control, Outcome, RenderError, RenderJob, Renderer, SamplerKind, Stats,
+};
 use weekender::progressive::{EndReason, Phase, Plan, Progressive, RenderRequest};
-use weekender::render_gpu::{Fault, FaultInjection, GpuOptions, InjectionPoint};
+use weekender::render_gpu::{GpuOptions, GpuRenderer};
 use weekender::scene::builtin::BuiltinScene;
 
-fn job(size: [u32; 2]) -> RenderJob {
+/// A call of a renderer; passes are counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Call {
+    Prepare,
+    Pass(u32),
+    Finish,
+}
+
+/// A way to break a device.
+type Fault = fn(&wgpu::Device);
+
+/// What pulling the plug does.
+fn lose(device: &wgpu::Device) {
+    device.destroy();
+}
+
+fn misuse(device: &wgpu::Device) {
+    let usage = wgpu::BufferUsages::empty();
+    device.create_buffer(&wgpu::BufferDescriptor { label: None, size: 4, usage, mapped_at_creation: false });
+}
+
+/// A GPU whose device breaks before a call.
+struct Breaking {
+    gpu: GpuRenderer,
+    fault: Fault,
+    at: Call,
+    passes: u32,
+}
+
+impl Breaking {
+    fn note(&self, call: Call) {
+        if call == self.at {
+            (self.fault)(self.gpu.device());
+        }
+    }
+}
+
+impl Renderer for Breaking {
+    fn info(&self) -> BackendInfo {
+        self.gpu.info()
+    }
+
+    fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
+        self.note(Call::Prepare);
+        self.gpu.prepare(job, cancel)
+    }
+
+    fn advance(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        control: &Control,
+    ) -> Result<Outcome, RenderError> {
+        self.note(Call::Pass(self.passes));
+        self.passes += 1;
+        self.gpu.advance(job, range, film, control)
+    }
+
+    fn finish(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
+        self.note(Call::Finish);
+        self.gpu.finish(film)
+    }
+}
+
+fn job() -> RenderJob {
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
-    job_of(&scene, camera, size, 8, SamplerKind::Sobol, true)
-}
-
-/// A backend that will fail; `None` without an adapter.
-fn failing(fault: Fault, point: InjectionPoint, after: u64) -> Option<BackendChoice> {
-    let adapter = gpu(GpuOptions::default())?.adapter().name.clone();
-    Some(BackendChoice::Gpu(GpuOptions {
-        injection: Some(FaultInjection { fault, point, after }),
-        patience: Duration::from_millis(300),
-        samples_per_dispatch: Some(2),
-        ..GpuOptions::of_adapter(Some(&adapter))
-    }))
-}
-
-fn check(progressive: Progressive, case: &str) {
-    let status = progressive.wait_until_over();
-    assert_eq!(status.phase, Phase::Done(EndReason::Samples), "{case}: {status:?}");
-    let joined = status.messages.join("; ");
-    println!("{case}: {joined}");
-    assert!(joined.contains("gpu failed") && joined.contains("the CPU continues"), "{case}: {joined}");
-    assert!(!case.contains("Hang") || joined.contains("has not responded"), "{case}: {joined}");
-    let by_cpu = status.contributions.iter().find(|part| part.backend.name == "cpu");
-    assert!(by_cpu.is_some_and(|part| part.samples_per_pixel > 0), "{case}: {status:?}");
-    assert_eq!(progressive.take_film().unwrap().samples().to_string(), "0..64", "{case}");
+    job_of(&scene, camera, [64, 36], 8, SamplerKind::Sobol, true)
 }
 
 #[test]
-fn fault_in_any_phase_completes_picture() {
-    // A software adapter runs out of memory only when the program does: see tests/gpu/program.rs.
-    for fault in [Fault::Lost, Fault::Invalid, Fault::Hang] {
-        let points = [
-            (InjectionPoint::Prepare, 0),
-            (InjectionPoint::Dispatch, 0),
-            (InjectionPoint::Dispatch, 5),
-            (InjectionPoint::Readback, 0),
-            (InjectionPoint::Readback, 1),
-        ];
-        for (point, after) in points {
-            let Some(backend) = failing(fault, point, after) else { return };
-            let mut progressive = Progressive::spawn().unwrap();
-            progressive.start(RenderRequest::new(job([64, 36]), backend, Plan::samples(64)));
-            check(progressive, &format!("{fault:?} at {point:?} {after}"));
+fn the_cpu_completes_the_picture_of_a_broken_device() {
+    const SAMPLES: u64 = 64;
+    let Some(mut whole) = gpu(GpuOptions::default()) else { return };
+    for (fault, word) in [(lose as Fault, "lost"), (misuse, "alidation")] {
+        for at in [Call::Prepare, Call::Pass(0), Call::Pass(3), Call::Finish] {
+            let broken = gpu(GpuOptions { samples_per_dispatch: Some(2), ..GpuOptions::default() }).unwrap();
+            let mut broken = Some(Breaking { gpu: broken, fault, at, passes: 0 });
+            let factory = move |choice: &BackendChoice| match broken.take() {
+                Some(broken) => Ok(Box::new(broken) as Box<dyn Renderer>),
+                None => backends::create(choice),
+            };
+            let mut progressive = Progressive::with_factory(Box::new(factory)).unwrap();
+            let backend = BackendChoice::Gpu(GpuOptions::default());
+            progressive.start(RenderRequest::new(job(), backend, Plan::samples(SAMPLES)));
+            let status = progressive.wait_until_over();
+            let case = format!("{word} at {at:?}: {status:?}");
+            assert_eq!(status.phase, Phase::Done(EndReason::Samples), "{case}");
+            let said = status.messages.join("; ");
+            assert!(said.contains(word) && said.contains("the CPU continues"), "{case}");
+            let by_gpu = status.contributions.iter().find(|part| part.backend.name == "gpu");
+            let by_gpu = by_gpu.map_or(0, |part| part.samples_per_pixel);
+            let mut expected = job().new_film();
+            if by_gpu > 0 {
+                whole.accumulate(&job(), 0..by_gpu, &mut expected, &go_on()).unwrap();
+            }
+            cpu().accumulate(&job(), by_gpu..SAMPLES, &mut expected, &go_on()).unwrap();
+            assert!(progressive.take_film() == Some(expected), "{case}");
         }
     }
 }
 
+/// Dispatches grow until one takes longer than the patience.
 #[test]
-fn fault_during_pause_is_survived() {
-    for fault in [Fault::Lost, Fault::Hang] {
-        let Some(backend) = failing(fault, InjectionPoint::Readback, 1) else { return };
-        let mut progressive = Progressive::spawn().unwrap();
-        progressive.start(RenderRequest::new(job([64, 36]), backend, Plan::samples(64)));
-        // A pause reads the samples back from the device.
-        for _ in 0..3 {
-            progressive.pause();
-            std::thread::sleep(Duration::from_millis(5));
-            progressive.resume();
-        }
-        check(progressive, &format!("{fault:?} in a pause"));
-    }
-}
-
-/// As when the window is resized while the device hangs.
-#[test]
-fn new_job_starts_while_device_hangs() {
-    let Some(backend) = failing(Fault::Hang, InjectionPoint::Dispatch, 5) else { return };
-    let mut progressive = Progressive::spawn().unwrap();
-    for (width, samples) in [(64, 100_000), (50, 100_000), (41, 100_000), (32, 64)] {
-        progressive.start(RenderRequest::new(job([width, 20]), backend.clone(), Plan::samples(samples)));
-        std::thread::sleep(Duration::from_millis(60));
-    }
-    let status = progressive.wait_until_over();
-    assert_eq!(status.phase, Phase::Done(EndReason::Samples), "{status:?}");
-    let film = progressive.take_film().unwrap();
-    assert_eq!((film.width(), film.sample_count()), (32, 64));
+fn a_device_that_does_not_respond_is_given_up() {
+    let options = GpuOptions {
+        dispatch_target: Duration::from_secs(1),
+        patience: Duration::from_millis(1),
+        ..GpuOptions::default()
+    };
+    let Some(mut gpu) = gpu(options) else { return };
+    let mut film = job().new_film();
+    let error = gpu.accumulate(&job(), 0..1 << 24, &mut film, &go_on()).unwrap_err();
+    assert!(matches!(error, RenderError::Backend { backend: "gpu", .. }), "{error}");
+    assert!(error.to_string().contains("has not responded"), "{error}");
+    assert!(film == job().new_film());
 }

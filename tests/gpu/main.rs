@@ -8,7 +8,6 @@ mod complete;
 mod driver;
 mod faults;
 mod pairs;
-mod program;
 mod renderer;
 mod shaders;
 mod twins;

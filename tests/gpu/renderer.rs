@@ -9,9 +9,7 @@ use weekender::job::render::{Control, RenderError, RenderJob, RenderSettings, Re
 use weekender::kernel::{GpuDispatch, Tag, WORKGROUP_SIZE};
 use weekender::prepared::PreparedScene;
 use weekender::render_gpu::shader_source::EntryPoint;
-use weekender::render_gpu::{
-    Fault, FaultInjection, GpuError, GpuOptions, GpuRenderer, InjectionPoint, adapters,
-};
+use weekender::render_gpu::{GpuError, GpuOptions, GpuRenderer, adapters};
 use weekender::scene::builtin::{BOOK_CAMERA, BuiltinScene, field};
 use weekender::scene::{Camera, Material, Scene, Sky, Sphere};
 use weekender::stages::{Stage, Transfer};
@@ -222,39 +220,6 @@ fn new_film_gets_no_old_samples() {
     assert!(film != expected);
     let mut fresh = crate::common::gpu::gpu(GpuOptions::default()).unwrap();
     assert!(film == rendered(&mut fresh, &other, 4));
-}
-
-#[test]
-fn cpu_takes_over_after_fault() {
-    // A software adapter runs out of memory only when the program does: see program.rs.
-    for fault in [Fault::Lost, Fault::Invalid] {
-        let options = GpuOptions {
-            samples_per_dispatch: Some(1),
-            injection: Some(FaultInjection { fault, point: InjectionPoint::Dispatch, after: 20 }),
-            ..GpuOptions::default()
-        };
-        let Some(mut gpu) = gpu(options) else { return };
-        let job = three_spheres([64, 36], 8, false);
-        let mut film = job.new_film();
-        let mut next = 0;
-        let error = loop {
-            let before = film.clone();
-            match gpu.accumulate(&job, next..next + 4, &mut film, &go_on()) {
-                Ok(_) => next += 4,
-                Err(error) => {
-                    assert!(film == before);
-                    break error;
-                }
-            }
-            assert!(next < 100, "{fault:?} went unnoticed");
-        };
-        println!("{fault:?}: {error}");
-        assert!(matches!(error, RenderError::Backend { backend: "gpu", .. }));
-        // The backend stays broken.
-        assert!(gpu.accumulate(&job, next..next + 4, &mut film, &go_on()).is_err());
-        cpu().accumulate(&job, next..next + 4, &mut film, &go_on()).unwrap();
-        assert_eq!(film.sample_count(), next + 4);
-    }
 }
 
 /// The picture of a film, one word per pixel, red in the lowest byte, by the shader that live figures use.

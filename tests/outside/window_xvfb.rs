@@ -285,40 +285,9 @@ fn a_person_can_use_the_window() {
     assert!(pixels(&saved) == pixels(&rendered), "the saved picture differs from that of {line}");
 }
 
-#[test]
-fn a_panic_of_the_window_keeps_its_film_and_leaves_a_report() {
-    let Some(display) = Display::start() else { return };
-    let home = tempfile::tempdir().unwrap();
-    let output = display
-        .weekender(home.path())
-        .env("TMPDIR", home.path())
-        .args(["--stage", "glass-refract", "--size", "240x135", "--samples", "4000000000", "--device", "cpu"])
-        .args(["--simulate-crash", "16"])
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    let one = |directory: &Path, ending: &str| match files(directory, ending).as_slice() {
-        [one] => one.clone(),
-        all => panic!("{ending}: {all:?}: {said}"),
-    };
-    // Where the next window looks for it.
-    let film = autosave(home.path());
-    assert!(checkpoint::load(&film).unwrap().film.sample_count() >= 16);
-    assert!(said.contains(&format!("continue with --resume {}", film.display())), "{said}");
-    let report = std::fs::read_to_string(one(home.path(), "txt")).unwrap();
-    assert!(report.contains("injected fault") && report.contains("--stage glass-refract"), "{report}");
-}
-
 /// Where a window autosaves its film.
 fn autosave(home: &Path) -> PathBuf {
     home.join("state/weekender/autosave.exr")
-}
-
-/// The files with this ending in a directory, if it exists.
-fn files(directory: &Path, ending: &str) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(directory).into_iter().flatten().map(|entry| entry.unwrap().path());
-    entries.filter(|path| path.extension().is_some_and(|own| own == ending)).collect()
 }
 
 fn wait_for(what: &str, is_so: impl Fn() -> bool) {

@@ -9,7 +9,6 @@ mod compare;
 mod device;
 mod edits;
 mod extreme;
-mod faults;
 mod files;
 mod first_steps;
 mod harness;

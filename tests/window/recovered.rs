@@ -7,6 +7,7 @@ use eframe::{App, Storage};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::collections::HashMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::Duration;
 use weekender::app::{Command, Device, Dock, Show, Theme, Window};
@@ -135,6 +136,22 @@ fn window_that_ended_early_resumes_its_film() {
     assert!(!has_offer(&window("--device cpu", state.path(), 3600)), "the user has answered");
 }
 
+#[test]
+fn a_panic_saves_the_film() {
+    let state = tempfile::tempdir().unwrap();
+    let mut first = window(&format!("{PICTURE} --samples 4000000000"), state.path(), 3600);
+    until(&mut first, "samples", has_samples(16));
+    let samples = first.state().status().samples_per_pixel;
+    let panicked = catch_unwind(AssertUnwindSafe(move || {
+        let _window = first;
+        panic!("a slip of the window");
+    }));
+    assert!(panicked.is_err());
+    let mut next = window("--device cpu", state.path(), 3600);
+    assert!(says(next.state(), "ended early"), "{:?}", next.state().messages());
+    until(&mut next, "its samples", |window| held(window) >= samples);
+}
+
 /// A film of another picture that was saved earlier does not come in its place.
 #[test]
 fn last_edits_come_back_with_their_history() {
@@ -206,6 +223,28 @@ fn failed_autosave_is_reported_and_rendering_continues() {
     until(&mut harness, told, |window| window.messages().iter().any(|text| text.starts_with(told)));
     let samples = harness.state().status().samples_per_pixel;
     until(&mut harness, "more samples", |window| window.status().samples_per_pixel > samples);
+}
+
+/// The message says so. The program does not do it yet: it forgets that the last save failed.
+#[test]
+#[should_panic(expected = "was not tried again")]
+fn a_failed_autosave_of_a_finished_film_is_tried_again() {
+    let state = tempfile::tempdir().unwrap();
+    let film = state.path().join("autosave.exr");
+    std::fs::create_dir_all(film.join("full")).unwrap();
+    let mut harness = window(&format!("{PICTURE} --samples 40"), state.path(), 0);
+    let has_ended = |window: &Window| window.status().phase.is_over() && says(window, "Autosave failed");
+    until(&mut harness, "the end", has_ended);
+    let mut wait = || {
+        for _ in 0..100 {
+            std::thread::sleep(Duration::from_millis(5));
+            harness.step();
+        }
+    };
+    wait();
+    std::fs::remove_dir_all(&film).unwrap();
+    wait();
+    assert!(film.is_file(), "it was not tried again");
 }
 
 #[derive(Default)]

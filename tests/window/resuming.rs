@@ -78,6 +78,22 @@ fn a_long_render_is_there_again_when_one_comes_back() {
     }
 }
 
+/// The program does not keep them yet: the pass in progress is cancelled, and its film with it. Here a pass takes a second.
+#[test]
+#[should_panic(expected = "its samples are gone")]
+fn a_long_render_that_is_left_while_it_traces_keeps_its_samples() {
+    let mut harness =
+        open("--stage metal --size 800x450 --samples 4000000000 --device reference --threads 1");
+    until(&mut harness, "samples", has_samples(2));
+    harness.state_mut().tracing.seconds_before = Some(60.0);
+    send(&mut harness, Command::NextStage);
+    until(&mut harness, "another picture", has_samples(1));
+    send(&mut harness, Command::PreviousStage);
+    until(&mut harness, "the picture", has_samples(1));
+    assert_eq!(harness.state().shown_document().stage().unwrap().id, "metal");
+    assert!(held(harness.state()) > 0, "its samples are gone");
+}
+
 /// A film that is opened takes its place.
 #[test]
 fn a_long_render_is_there_again_after_a_film_was_opened() {

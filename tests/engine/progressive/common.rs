@@ -218,7 +218,6 @@ pub const CPU: BackendChoice = BackendChoice::Cpu(CpuOptions {
     threads: None,
     low_priority: false,
     general: false,
-    panics_after: None,
 });
 pub const FAILING: BackendChoice = BackendChoice::Reference { threads: None };
 

@@ -4,14 +4,11 @@ use super::common::{
     CPU, FAILING, Fake, PATIENCE, PAUSE, expected, forgetful, job, other_cpu, parts, said, spoiling, started,
     started_with, stopped, wait_for, wait_until,
 };
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::channel;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
-use weekender::job::recipe::Recipe;
-use weekender::job::render::{RenderError, RenderSettings, Renderer};
 use weekender::progressive::{EndReason, Phase, Plan, Progressive, RenderRequest};
-use weekender::render_cpu::{CpuOptions, CpuRenderer};
 use weekender::render_gpu::GpuError;
 
 #[test]
@@ -207,29 +204,4 @@ fn dead_render_thread_reports_the_lost_film() {
     let lost = "the render thread failed; its film is lost";
     assert_eq!(progressive.status().phase, Phase::Failed(lost.to_owned()));
     assert_eq!(progressive.take_film(), None);
-}
-
-/// A panic of the real tracer in the middle of a tile.
-#[test]
-fn panic_in_a_tile_leaves_the_film_unchanged() {
-    let recipe = Recipe::find("three-spheres").unwrap();
-    for estimate_error in [false, true] {
-        let size = RenderSettings { width: 100, height: 70, estimate_error, ..recipe.settings };
-        let job = recipe.job().unwrap().seen_by(recipe.camera, size).unwrap();
-        let never = AtomicBool::new(false);
-        let mut film = job.new_film();
-        CpuRenderer::new(CpuOptions::default()).unwrap().accumulate(&job, 0..6, &mut film, &never).unwrap();
-        let before = film.clone();
-        let options = CpuOptions { panics_after: Some(3), threads: Some(2), ..CpuOptions::default() };
-        let mut renderer = CpuRenderer::new(options).unwrap();
-        let error = renderer.accumulate(&job, 6..40, &mut film, &never).unwrap_err();
-        assert!(matches!(error, RenderError::Backend { backend: "cpu", .. }), "{error}");
-        assert!(error.to_string().contains("panicked"), "{error}");
-        assert!(film == before);
-        // The next attempt works.
-        renderer.accumulate(&job, 6..40, &mut film, &never).unwrap();
-        let mut whole = job.new_film();
-        CpuRenderer::new(CpuOptions::default()).unwrap().accumulate(&job, 0..40, &mut whole, &never).unwrap();
-        assert!(film == whole);
-    }
 }

@@ -205,13 +205,13 @@ fn film_is_shown_on_request_and_again_only_in_another_view() {
     assert_eq!(progressive.newest_picture(), None);
     let view = View::Luminance([-8.0, 4.0]);
     progressive.set_view(view.clone());
-    assert_eq!(picture(&progressive, 64).rgb8, view.resolve(&expected(64), Transfer::Gamma2, None));
+    assert_eq!(picture(&progressive, 64).rgb8, view.resolve(&expected(64), Transfer::Gamma2));
     // A restarted render keeps the view.
     progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(4)));
     progressive.wait_until_over();
     let picture = picture(&progressive, 4);
     assert_eq!(picture.run, 2);
-    assert_eq!(picture.rgb8, view.resolve(&expected(4), Transfer::Gamma2, None));
+    assert_eq!(picture.rgb8, view.resolve(&expected(4), Transfer::Gamma2));
 }
 
 /// The first picture is worth waiting for the device's samples.
@@ -243,7 +243,7 @@ fn a_preview_is_smooth_and_its_first_pass_is_long_enough() {
     assert_eq!(shown(Some(4), View::Exposed(1.0, None)).0, film.smoothed().exposed(transfer, 1.0));
     // Heat maps are not smoothed.
     let view = View::Luminance([-8.0, 4.0]);
-    assert_eq!(shown(Some(4), view.clone()).0, view.resolve(&film, transfer, None));
+    assert_eq!(shown(Some(4), view.clone()).0, view.resolve(&film, transfer));
 }
 
 #[test]
