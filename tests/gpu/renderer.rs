@@ -138,28 +138,6 @@ fn the_first_of_equal_spheres_is_hit() {
 }
 
 #[test]
-fn film_moves_between_cpu_and_gpu() {
-    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
-    let mut cpu = cpu();
-    let job = three_spheres([80, 45], 24, true);
-    let mut film = job.new_film();
-    cpu.accumulate(&job, 0..30, &mut film, &go_on()).unwrap();
-    gpu.accumulate(&job, 30..77, &mut film, &go_on()).unwrap();
-    cpu.accumulate(&job, 77..100, &mut film, &go_on()).unwrap();
-    gpu.accumulate(&job, 100..128, &mut film, &go_on()).unwrap();
-    assert_eq!(film.sample_count(), 128);
-    assert_eq!([film.half_sample_count(0), film.half_sample_count(1)], [64, 64]);
-    let alone = rendered(&mut cpu, &job, 128);
-    let difference = picture_mean(&film) - picture_mean(&alone);
-    assert!(difference.abs() < 1e-5, "{difference}");
-
-    // Adding samples twice is refused, and the film is unchanged.
-    let before = film.clone();
-    assert!(matches!(gpu.accumulate(&job, 120..130, &mut film, &go_on()), Err(RenderError::Film(_))));
-    assert!(film == before);
-}
-
-#[test]
 fn cancelled_between_dispatches() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let job = three_spheres([64, 36], 8, false);

@@ -350,55 +350,6 @@ fn a_killed_window_loses_little_and_a_terminated_one_nothing() {
     assert!(film == checkpoint::load(&whole).unwrap().film);
 }
 
-/// Number of spheres in the picture of a window that continues from this state directory.
-fn spheres_after(state: &Path) -> usize {
-    let copy = tempfile::tempdir().unwrap();
-    for entry in std::fs::read_dir(state).unwrap() {
-        let path = entry.unwrap().path();
-        std::fs::copy(&path, copy.path().join(path.file_name().unwrap())).unwrap();
-    }
-    let Request::Window(options) = cli::parse(["weekender".into()]).unwrap() else { panic!("no window") };
-    let state_directory = Some(copy.path().to_owned());
-    let window = weekender::app::Window::new(WindowOptions { state_directory, ..*options }).unwrap();
-    window.model.document.scene().spheres.len()
-}
-
-/// At ten moments of editing, rendering and saving.
-#[test]
-fn a_killed_window_comes_back_with_what_was_edited() {
-    let Some(display) = Display::start() else { return };
-    let home = tempfile::tempdir().unwrap();
-    let state = home.path().join("state/weekender");
-    let film = autosave(home.path());
-    let mut before = None;
-    for round in 0..10_u64 {
-        let log = Log(home.path().join(format!("frames {round}.csv")));
-        let mut command = display.weekender(home.path());
-        command.args(["--device", "cpu", "--autosave-every", "0.2s", "--frame-log"]).arg(&log.0);
-        if before.is_none() {
-            command.args(["--stage", "metal", "--size", "240x135"]);
-        }
-        let mut child = command.spawn().unwrap();
-        let id = display.wait_for_window(&mut child);
-        log.wait_for_backend("cpu", 0);
-        let _ = display.xdotool(&["windowfocus", "--sync", &id]);
-        let presses = 1 + round % 3;
-        (0..presses).for_each(|_| display.key("Insert"));
-        // Milliseconds that look random.
-        std::thread::sleep(Duration::from_millis(round * 7919 % 443));
-        child.kill().unwrap();
-        child.wait().unwrap();
-        let added = log.lines("command").iter().filter(|line| line[0] == "Add a sphere").count();
-        let found = spheres_after(&state);
-        // The last one may have been added and not yet saved.
-        let expected = before.unwrap_or(5) + added;
-        assert!(found == expected || found + 1 == expected, "round {round}: {found}, not {expected}");
-        assert!(!film.exists() || checkpoint::load(&film).is_ok(), "round {round}");
-        before = Some(found);
-    }
-    assert!(before.unwrap() > 10, "{before:?}");
-}
-
 #[test]
 fn without_a_display_the_message_names_the_way_out() {
     let home = tempfile::tempdir().unwrap();

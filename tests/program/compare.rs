@@ -109,29 +109,6 @@ fn clipped_picture_verdicts() {
 }
 
 #[test]
-fn non_finite_in_one_picture_differs() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    for (name, value) in [("number.pfm", 0.5), ("nan.pfm", f32::NAN), ("minus.pfm", -f32::INFINITY)] {
-        // A PFM starts with the lowest row: row 5 of the file is row 10 of 16 from above.
-        let pixels = (0..64 * 16).flat_map(|i| [if i == 5 * 64 + 30 { value } else { 0.5 }; 3]);
-        let header = b"PF\n64 16\n-1\n".iter().copied();
-        fs::write(at.join(name), header.chain(pixels.flat_map(f32::to_le_bytes)).collect::<Vec<u8>>())
-            .unwrap();
-    }
-    for (first, second) in [("number.pfm", "nan.pfm"), ("nan.pfm", "minus.pfm"), ("minus.pfm", "number.pfm")]
-    {
-        let (code, text, _) = compare(&[first, second], at);
-        let note = "3 channels of 1 pixels are NaN or infinite in only one picture, the first at 30,10:";
-        assert!(code == 1 && text.contains(note), "{text}");
-        let (_, found) = json(&[first, second], at);
-        assert_eq!(found["non_finite"]["first"], serde_json::json!([30, 10]), "{found}");
-        let (code, text, _) = compare(&[first, first], at);
-        assert!(code == 0 && text.contains("equal to the bit"), "{first}: {text}");
-    }
-}
-
-#[test]
 fn incomparable_pictures_exit_with_2() {
     let at = TempDir::new().unwrap();
     let at = at.path();

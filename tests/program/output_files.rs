@@ -219,17 +219,4 @@ mod unix {
         fs::remove_file(&target).unwrap();
         assert!(check_writable(&link).unwrap_err().to_string().contains("link to a missing file"));
     }
-
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn a_full_disk_is_an_error_with_the_file_s_name() {
-        let directory = tempfile::tempdir().unwrap();
-        for format in OutputFormat::ALL {
-            let path = directory.path().join(format!("full{}", format.ending()));
-            symlink("/dev/full", &path).unwrap();
-            let message =
-                write_image(&path, &film(), Transfer::Gamma2, &description()).unwrap_err().to_string();
-            assert!(message.contains("full") && message.contains("free some space"), "{message}");
-        }
-    }
 }

@@ -25,21 +25,6 @@ fn another_device_continues_the_film() {
 }
 
 #[test]
-fn a_pause_loses_nothing() {
-    let mut harness = open("--stage glass-schlick --size 64x36 --samples 4000000000");
-    until(&mut harness, "samples", has_samples(8));
-    harness.key_press(Key::Space);
-    until(&mut harness, "a pause", |window| window.status().phase == weekender::progressive::Phase::Paused);
-    let (run, samples) = (harness.state().status().run, harness.state().status().samples_per_pixel);
-    std::thread::sleep(Duration::from_millis(60));
-    harness.run_steps(3);
-    assert_eq!(harness.state().status().samples_per_pixel, samples);
-    harness.key_press(Key::Space);
-    until(&mut harness, "more samples", |window| window.status().samples_per_pixel > samples);
-    assert_eq!(harness.state().status().run, run);
-}
-
-#[test]
 fn a_new_start_ends_a_pause() {
     let mut harness = open("--stage glass-schlick --size 64x36 --samples 4000000000");
     until(&mut harness, "samples", has_samples(8));

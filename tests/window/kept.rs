@@ -144,30 +144,6 @@ fn kept_picture_continues_with_its_samples() {
     assert!(harness.state().status().contributions.is_empty(), "nothing was traced again");
 }
 
-#[test]
-fn a_kept_picture_is_wiped_and_subtracted() {
-    let mut harness = finished(8);
-    let kept = mean(&mut harness);
-    keep(&mut harness);
-    send(&mut harness, Command::Difference);
-    let none = HeatScale::DIFFERENCE.colour(0.0);
-    until(&mut harness, "no difference", |window| window.shown_pixel(AT) == Some(none));
-    change(&mut harness);
-    let live = mean(&mut harness);
-    let squares: f64 = (0..3).map(|i| (live[i] - kept[i]).powi(2)).sum();
-    let colour = HeatScale::DIFFERENCE.colour((squares / 3.0).sqrt());
-    until(&mut harness, "the difference", |window| window.shown_pixel(AT) == Some(colour));
-    harness.key_press(Key::C);
-    until(&mut harness, "a wipe", |window| window.is_comparing() && window.has_other_picture());
-    // Another card takes the place of the one that is compared with.
-    keep(&mut harness);
-    control(&harness, &title(&harness, 1)).click();
-    harness.run_steps(3);
-    assert!(harness.state().is_comparing());
-    send(&mut harness, Command::Wipe);
-    assert!(!harness.state().is_comparing(), "it was this wipe");
-}
-
 /// The name of a card.
 fn title(harness: &Harness<'_, Window>, place: usize) -> String {
     format!("{}: {}", place + 1, harness.state().kept()[place].0)

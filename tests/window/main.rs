@@ -31,7 +31,6 @@ mod resuming;
 mod right;
 mod sights;
 mod size;
-mod snapshots;
 mod stages;
 mod thumbnails;
 mod tone;

@@ -8,23 +8,6 @@ use egui_kittest::{Harness, Node};
 use weekender::app::{Command, Device, Window};
 
 #[test]
-fn sliders_change_the_picture_and_undo_brings_it_back() {
-    let mut harness = open("--stage defocus --size 32x18");
-    let before = harness.state().shown_document().camera;
-    for (name, value) in [("Field of view", 50.0), ("Focus distance", 2.0)] {
-        control(&harness, name).set_value_accesskit(value);
-        harness.run_steps(3);
-    }
-    let camera = harness.state().shown_document().camera;
-    assert_eq!((camera.vfov_degrees, camera.focus_distance), (50.0, Some(2.0)));
-    for _ in 0..2 {
-        send(&mut harness, Command::Undo);
-        harness.run_steps(3);
-    }
-    assert_eq!(harness.state().shown_document().camera, before);
-}
-
-#[test]
 fn a_drag_on_the_picture_takes_the_keys_from_a_field() {
     let mut harness = open("--stage metal --size 32x18 --device cpu");
     until(&mut harness, "a picture", has_samples(1));

@@ -64,23 +64,3 @@ fn one_key_goes_to_the_next_stage() {
     }
     assert!(harness.state().messages().is_empty(), "{:?}", harness.state().messages());
 }
-
-/// The numbers of a pixel stand below the picture, also on a small screen.
-#[test]
-fn numbers_leave_the_picture_free() {
-    // A stage, and a scene that has no texts.
-    for picture in ["--stage glass-schlick", "--scene metals"] {
-        let mut harness = present(&format!("{picture} --device cpu"), [800.0, 600.0]);
-        until(&mut harness, "a picture", has_samples(1));
-        let rect = harness.state().picture_rect();
-        harness.hover_at(rect.center());
-        until(&mut harness, "a pixel", |window| window.inspected().is_some());
-        harness.run_steps(3);
-        for name in ["light", "saved as"] {
-            let row = harness.get_by_label(name).rect();
-            assert!(row.top() >= rect.bottom() - 1.0, "{picture}: {name}: {row} below {rect}");
-            let keys = harness.get_by_label_contains("Escape ends").rect();
-            assert!(row.bottom() <= keys.top(), "{picture}: {name}: {row}");
-        }
-    }
-}

@@ -154,17 +154,3 @@ fn every_partner_is_wiped_flipped_and_subtracted_and_read() {
     }
     assert!(kinds >= 9, "{kinds}");
 }
-
-#[test]
-fn the_panel_names_the_sides_of_a_wipe() {
-    let mut harness = open("--stage glass-schlick --size 64x36 --samples 4 --device cpu");
-    send(&mut harness, Command::Wipe);
-    until(&mut harness, "the other picture", |window| window.has_other_picture());
-    let point = place(&harness, [10, 20]);
-    harness.event(egui::Event::PointerMoved(point));
-    until(&mut harness, "both sides", |window| window.readout().is_some_and(|found| found.3.is_some()));
-    harness.run_steps(2);
-    for name in ["11.2", "11.4", "change", "saved as"] {
-        assert!(harness.query_all_by_label(name).next().is_some(), "{name}");
-    }
-}

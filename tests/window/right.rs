@@ -105,19 +105,6 @@ fn a_check_leaves_the_users_own_picture_as_it_was() {
     send(&mut harness, Command::Undo);
 }
 
-#[test]
-fn a_changed_picture_is_renewed_beside_ours() {
-    let mut harness = open(SMALL);
-    let folder = drop_file(&mut harness, &gradient(false));
-    until_compared(&mut harness);
-    send(&mut harness, Command::Flip);
-    assert_eq!(harness.state().other_pixel([0, 0]), Some([0, 0, 0]));
-    std::fs::write(folder.path().join("mine.ppm"), gradient(true)).unwrap();
-    until_seen(&mut harness, "is checked again");
-    until(&mut harness, "the new picture", |window| window.other_pixel([0, 0]) == Some([0, 255, 0]));
-    assert!(harness.state().is_comparing(), "it stays flipped");
-}
-
 /// A stage of metal in which a part is wrong: what differs is marked and enlarged.
 #[test]
 fn places_that_differ_are_enlarged_one_by_one() {
@@ -165,46 +152,4 @@ fn the_code_of_a_stage_is_shown_and_copied() {
     send(&mut harness, Command::Code);
     harness.run_steps(2);
     assert!(harness.query_by_label("Why").is_some());
-}
-
-#[test]
-fn view_and_pixel_stay_where_they_are() {
-    let mut harness = open_sized("--stage ppm-tiny", [1280.0, 800.0]);
-    let mut places = Vec::new();
-    for stage in Stage::ALL {
-        send(&mut harness, Command::Stage(stage));
-        harness.run_steps(2);
-        let place = |name| harness.get_by_label(name).rect().top();
-        places.push([place("View, folded"), place("Pixel")]);
-    }
-    places.dedup();
-    assert_eq!(places.len(), 1, "{places:?}");
-}
-
-/// Buttons stay under the pointer while the sentence about the two pictures comes and goes.
-#[test]
-fn tools_of_a_comparison_do_not_move() {
-    let mut harness = open_sized(SMALL, [1280.0, 800.0]);
-    send(&mut harness, Command::Wipe);
-    until(&mut harness, "both", |window| window.has_other_picture() && has_samples(4)(window));
-    let place = |harness: &Harness<'_, Window>| control(harness, "Difference").rect();
-    let before = place(&harness);
-    send(&mut harness, Command::OnlyNoise);
-    until(&mut harness, "a verdict", |window| window.verdict().is_some());
-    harness.run_steps(3);
-    assert_eq!(place(&harness), before);
-}
-
-#[test]
-fn the_text_of_a_stage_keeps_room_in_low_windows() {
-    for size in [[800.0, 600.0], [1280.0, 800.0]] {
-        let mut harness = open_sized(SMALL, size);
-        send(&mut harness, Command::Info);
-        send(&mut harness, Command::Info);
-        control(&harness, "View, folded").click();
-        harness.run_steps(20);
-        let top = control(&harness, "Stage").rect().bottom();
-        let bottom = control(&harness, "View, open").rect().top();
-        assert!(bottom - top > 0.2 * size[1], "{size:?}: from {top} to {bottom}");
-    }
 }

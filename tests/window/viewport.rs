@@ -8,13 +8,11 @@ use weekender::app::{Command, Show, Window};
 use weekender::stages::Stage;
 
 #[test]
-fn drags_move_the_camera_and_undo_brings_it_back() {
+fn drags_move_the_camera_or_the_picture() {
     let mut harness = open("--stage view-distant");
     until(&mut harness, "a picture", has_samples(1));
     let camera = |harness: &egui_kittest::Harness<'_, Window>| harness.state().shown_document().camera;
     let before = camera(&harness);
-    // Undo returns only to states that have lasted for a moment.
-    harness.run_steps(90);
     drag(&mut harness, PointerButton::Primary, Modifiers::NONE);
     let orbited = camera(&harness);
     assert_ne!(orbited.look_from, before.look_from);
@@ -25,38 +23,9 @@ fn drags_move_the_camera_and_undo_brings_it_back() {
     harness.key_press(Key::Home);
     harness.run_steps(2);
     assert_eq!(camera(&harness), before);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    harness.run_steps(2);
-    assert_ne!(camera(&harness), before);
     let still = camera(&harness);
     drag(&mut harness, PointerButton::Primary, Modifiers::SHIFT);
     assert_eq!(camera(&harness), still, "the picture moves, not the camera");
-}
-
-#[test]
-fn keys_fly_where_they_say() {
-    let mut harness = open("--stage view-distant --size 64x36");
-    until(&mut harness, "a picture", has_samples(1));
-    for (key, expected) in [
-        (Key::D, [1, 0, 0]),
-        (Key::A, [-1, 0, 0]),
-        (Key::E, [0, 1, 0]),
-        (Key::Q, [0, -1, 0]),
-        (Key::W, [0, 0, 1]),
-        (Key::S, [0, 0, -1]),
-    ] {
-        let before = harness.state().shown_document().camera;
-        harness.key_down(key);
-        harness.run_steps(3);
-        harness.key_up(key);
-        harness.run_steps(2);
-        let after = harness.state().shown_document().camera;
-        let (basis, moved) = (before.basis(), after.look_from - before.look_from);
-        let [right, up, ahead] = [moved.dot(basis.u), moved.dot(basis.v), -moved.dot(basis.w)];
-        let sign = |along: f64| if along.abs() < 1e-9 { 0 } else { along.signum() as i32 };
-        assert_eq!([right, up, ahead].map(sign), expected, "{key:?}");
-        assert!((after.look_at - before.look_at).distance(moved) < 1e-9, "{key:?} looks the same way");
-    }
 }
 
 /// Turns the wheel with Ctrl at this point.

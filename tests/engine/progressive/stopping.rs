@@ -69,22 +69,6 @@ fn unwatched_first_pass_has_full_length() {
 }
 
 #[test]
-fn pauses_lose_nothing() {
-    let progressive = started(CPU, Plan::samples(1000));
-    for at in [2, 10, 300] {
-        wait_for(&progressive, at);
-        progressive.pause();
-        wait_until(&progressive, |status| status.phase != Phase::Tracing);
-        let held = progressive.status().samples_per_pixel;
-        std::thread::sleep(Duration::from_millis(30));
-        assert_eq!(progressive.status().samples_per_pixel, held);
-        progressive.resume();
-    }
-    progressive.wait_until_over();
-    assert_eq!(progressive.take_film(), Some(expected(1000)));
-}
-
-#[test]
 fn time_limit_includes_preparation_but_allows_one_pass() {
     for (limit, milliseconds) in [(1e-9, 0), (0.05, 100), (0.1, 0)] {
         let plan = Plan::until(Stop { seconds: Some(limit), ..Stop::default() });
