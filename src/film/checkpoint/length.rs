@@ -88,6 +88,6 @@ mod tests {
         let least = (8192 * 8192 * 4) - (16 << 20);
         assert_eq!(check_length(&header, least), Ok(()));
         let message = check_length(&header, least - 1).unwrap_err();
-        assert!(message.ends_with("too few for chunks of 8192x8192 pixels"), "{message}");
+        assert!(message.contains("8192x8192"), "{message}");
     }
 }

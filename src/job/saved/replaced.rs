@@ -98,12 +98,9 @@ mod tests {
         assert_eq!(found, Replaced::Same(film.samples().clone()));
         assert_eq!(found.warning(&path, |_| true), None);
         let message = found.warning(&path, |samples| samples.end() <= 8).unwrap();
-        assert!(
-            message.contains("a.exr, which holds 30 samples per pixel of this picture (2..32)"),
-            "{message}"
-        );
+        assert!(["a.exr", "30 samples", "2..32"].iter().all(|part| message.contains(part)), "{message}");
         let message = found.refusal(&path).unwrap();
-        assert!(message.contains("30 samples per pixel") && message.contains("--continue"), "{message}");
+        assert!(message.contains("30 samples") && message.contains("--continue"), "{message}");
 
         let found = Replaced::at(&path, &other);
         for message in [found.warning(&path, |_| true).unwrap(), found.refusal(&path).unwrap()] {
