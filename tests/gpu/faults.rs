@@ -31,7 +31,12 @@ fn lose(device: &wgpu::Device) {
 
 fn misuse(device: &wgpu::Device) {
     let usage = wgpu::BufferUsages::empty();
-    device.create_buffer(&wgpu::BufferDescriptor { label: None, size: 4, usage, mapped_at_creation: false });
+    let _ = device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: 4,
+        usage,
+        mapped_at_creation: false,
+    });
 }
 
 /// A GPU whose device breaks before a call.

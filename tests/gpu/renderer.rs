@@ -1,7 +1,7 @@
 //! The whole GPU renderer: known radiance, odd sizes, films continued by another backend, failures.
 
 use crate::common::gpu::program::{Program, Programs};
-use crate::common::gpu::{cpu, go_on, gpu, job_of, parted, picture_mean, rendered};
+use crate::common::gpu::{cpu, go_on, gpu, job_of, parted, rendered};
 use glam::DVec3;
 use std::sync::atomic::AtomicBool;
 use weekender::film::Film;

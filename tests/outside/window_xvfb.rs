@@ -8,7 +8,6 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use weekender::app::Device;
-use weekender::cli::{self, Request, WindowOptions};
 use weekender::film::checkpoint;
 use weekender::job::output::read_description;
 

@@ -1,10 +1,10 @@
-//! Every command, by table, key and menu, and how many there are.
+//! Every command, by table, key and menu.
 
-use crate::harness::{SMALL, control, open, open_sized, send};
+use crate::harness::{SMALL, control, open, send};
 use crate::questions::Ask as _;
-use eframe::egui::{Key, Role};
+use eframe::egui::Key;
 use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, MENUS, ROWS, Window};
 
 #[test]

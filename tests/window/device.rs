@@ -3,7 +3,6 @@
 use crate::harness::{has_samples, open, send, until};
 use crate::questions::Ask as _;
 use eframe::egui::Key;
-use std::time::Duration;
 use weekender::app::{Command, Device};
 
 #[test]

@@ -9,7 +9,6 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Window};
 use weekender::film::to_byte;
-use weekender::numbers::heat::HeatScale;
 use weekender::progressive::Phase;
 use weekender::stages::Transfer;
 

@@ -1,6 +1,6 @@
 //! The panels in the whole window.
 
-use crate::harness::{SMALL, control, drag, has_samples, open, open_sized, send, until};
+use crate::harness::{SMALL, drag, has_samples, open, open_sized, send, until};
 use crate::questions::Ask as _;
 use eframe::egui::{Key, Modifiers, PointerButton, accesskit::Role};
 use egui_kittest::kittest::{NodeT, Queryable};

@@ -1,11 +1,10 @@
 //! The numbers are those of the pixel under the pointer, whatever is drawn there.
 
 use crate::common::gpu::has_adapter;
-use crate::harness::{has_samples, name_file, open, send, until, window};
+use crate::harness::{has_samples, name_file, send, until, window};
 use crate::questions::Ask as _;
 use eframe::egui::{self, Pos2, vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use weekender::app::{Command, Partner, Window};
 use weekender::numbers::heat::HeatScale;

@@ -1,6 +1,6 @@
 //! The right panel: its tabs, the code of a stage, and the check of a picture.
 
-use crate::harness::{SMALL, control, has_samples, open, open_sized, send, until, until_seen};
+use crate::harness::{SMALL, control, has_samples, open, send, until, until_seen};
 use crate::questions::Ask as _;
 use eframe::egui;
 use egui_kittest::Harness;
@@ -8,7 +8,6 @@ use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use weekender::app::{Command, Window};
-use weekender::stages::Stage;
 
 /// The picture of stage 2.1 at 160 × 90, as the book's first program writes it; `upside_down`, if it counts rows from
 /// the wrong end.
