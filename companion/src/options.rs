@@ -5,8 +5,8 @@ use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use std::path::PathBuf;
 use weekender::backends::BackendChoice;
-use weekender::cli::ProgressChoice;
 use weekender::stages::Stage;
+use weekender::system::terminal::ProgressChoice;
 
 /// Writes the companion: a web page that follows the book in pictures, in code and live
 ///

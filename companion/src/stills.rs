@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 use weekender::batch::{Event, Studio};
-use weekender::cli::terminal::{Display, print};
 use weekender::film::{SOFTWARE, key};
 use weekender::job::output::write_small_png;
 use weekender::job::recipe::Recipe;
@@ -19,6 +18,7 @@ use weekender::system::console;
 use weekender::system::failure::Failure;
 use weekender::system::files::{check_writable, make_directory};
 use weekender::system::interrupt::Interrupt;
+use weekender::system::terminal::{Display, print};
 
 /// Maximum width of a quick still, pixels.
 const QUICK_WIDTH: u32 = 480;

@@ -1,8 +1,8 @@
 //! The films and the picture of a render: locked and checked before it begins, and written at its end.
 
-use crate::cli::{BatchOptions, command_line};
+use super::options::{BatchOptions, Output};
 use crate::denoise::{self, DenoisedError};
-use crate::film::{Description, Film, LockedFilm, SampleRanges, checkpoint, key};
+use crate::film::{Description, Film, LockedFilm, SampleRanges, key};
 use crate::job::output::{OutputFormat, write_image_as};
 use crate::job::recipe::file;
 use crate::job::render::panic_text;
@@ -18,9 +18,9 @@ use std::sync::{Mutex, PoisonError};
 
 /// The files of a render. No other run may write its films.
 pub(super) struct Files {
-    pub render: BatchOptions,
-    /// The optional film of `--checkpoint` comes first.
-    films: Vec<(PathBuf, Mutex<LockedFilm>)>,
+    pub options: BatchOptions,
+    /// The film of each output, if it has one.
+    films: Vec<Option<Mutex<LockedFilm>>>,
     /// Samples per pixel of the film that the render continues.
     pub held_before: u64,
     /// Tracing time of these samples, if known.
@@ -43,14 +43,15 @@ impl Files {
     ///
     /// # Errors
     /// [`Failure::Input`] if another run writes one of them.
-    pub fn lock(render: &BatchOptions) -> Result<Files, Failure> {
-        let out = render.out.iter().map(|(out, _)| out);
-        let out = out.filter(|out| is_film(out) && Some(*out) != render.checkpoint.as_ref());
-        let locked = |path: &PathBuf| Ok((path.clone(), Mutex::new(LockedFilm::new(path)?)));
-        let films = render.checkpoint.iter().chain(out).map(locked).collect::<Result<_, LockedError>>();
+    pub fn lock(options: BatchOptions) -> Result<Files, Failure> {
+        let lock = |output: &Output| {
+            let film = (output.format == OutputFormat::Exr).then(|| LockedFilm::new(&output.path));
+            Ok(film.transpose()?.map(Mutex::new))
+        };
+        let films = options.outputs.iter().map(lock).collect::<Result<_, LockedError>>();
         Ok(Files {
-            render: render.clone(),
             films: films.map_err(Failure::input)?,
+            options,
             held_before: 0,
             seconds_before: Some(0.0),
         })
@@ -59,28 +60,29 @@ impl Files {
     /// Checks the films that a render would replace. Returns warnings for the user.
     ///
     /// # Errors
-    /// [`Failure::Input`] if `--checkpoint` is a file that the render does not continue.
+    /// [`Failure::Input`] if the checkpoint is a file that the render does not continue.
     pub fn check(&mut self, resumed: Option<&SavedFilm>) -> Result<Vec<String>, Failure> {
-        let Files { render, films, held_before, seconds_before } = self;
+        let Files { options, films, held_before, seconds_before } = self;
         if let Some(saved) = resumed {
             (*held_before, *seconds_before) = (saved.film.sample_count(), saved.seconds);
         }
         let resumed = resumed.map(|saved| &saved.film);
         let mut warnings = Vec::new();
-        for (path, file) in films {
+        for (Output { path, is_checkpoint, .. }, file) in options.outputs.iter().zip(films) {
+            let Some(file) = file else { continue };
             let file = file.get_mut().unwrap_or_else(PoisonError::into_inner);
-            let is_same = |other: &PathBuf| same_file::is_same_file(other, &path).unwrap_or(false);
-            if let Some(film) = resumed.filter(|_| render.resume.as_ref().is_some_and(is_same)) {
+            let is_same = |other: &PathBuf| same_file::is_same_file(other, path).unwrap_or(false);
+            if let Some(film) = resumed.filter(|_| options.resume.as_ref().is_some_and(is_same)) {
                 file.holds(film.samples());
                 continue;
             }
-            let found = Replaced::at(path, &file::to_picture_toml(&render.recipe));
-            if render.checkpoint.as_ref() == Some(path) {
+            let found = Replaced::at(path, &file::to_picture_toml(&options.recipe));
+            if *is_checkpoint {
                 found.refusal(path).map_or(Ok(()), |reason| Err(Failure::Input(anyhow!(reason))))?;
                 continue;
             }
             let is_kept = |samples: &SampleRanges| {
-                let planned = render.plan.range();
+                let planned = options.plan.range();
                 samples.iter().all(|range| planned.start <= range.start && range.end <= planned.end)
                     || resumed.is_some_and(|film| film.samples().contains(samples))
             };
@@ -95,31 +97,48 @@ impl Files {
         Ok(warnings)
     }
 
-    /// Writes the film of `--checkpoint`. Returns a note for the user if the file already holds more.
+    /// Writes the checkpoint. Returns a note for the user if the file already holds more.
     pub fn save_checkpoint(&self, film: &Film, status: &Status) -> Result<Option<String>, String> {
-        self.films.first().map_or(Ok(None), |place| self.save(place, film, None, status))
-    }
-
-    fn save(
-        &self,
-        (path, file): &(PathBuf, Mutex<LockedFilm>),
-        film: &Film,
-        denoised: Option<&Film>,
-        status: &Status,
-    ) -> Result<Option<String>, String> {
-        let description = self.described(film, status);
-        caught(path, || {
-            let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
-            file.save(film, denoised, &description).map_err(|error| error.to_string())
+        let mut outputs = self.options.outputs.iter().zip(&self.films);
+        let checkpoint = outputs.find(|(output, _)| output.is_checkpoint);
+        checkpoint.map_or(Ok(None), |(output, file)| {
+            self.save(output, file.as_ref(), (film, None), &self.described(film, status))
         })
     }
 
-    /// Writes the films and the pictures, calling `say` before each. A failed write does not stop the others. If no film
-    /// could be written, it is saved elsewhere, since its samples may have taken hours. If the film cannot be denoised as
+    /// Writes a film with its denoised picture, or either as a picture. Returns a note for the user.
+    fn save(
+        &self,
+        output: &Output,
+        file: Option<&Mutex<LockedFilm>>,
+        (film, denoised): (&Film, Option<&Film>),
+        description: &Description,
+    ) -> Result<Option<String>, String> {
+        let Output { path, format, .. } = output;
+        let write = || match file {
+            Some(file) => {
+                let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
+                file.save(film, denoised, description).map_err(|error| error.to_string())
+            }
+            None => {
+                let (picture, transfer) = (denoised.unwrap_or(film), self.options.job.rules().transfer);
+                let wrote = write_image_as(path, *format, picture, transfer, description);
+                wrote.map(|()| None).map_err(|error| error.to_string())
+            }
+        };
+        // A panic counts as a failure, because the samples can still be written elsewhere or later.
+        catch_unwind(AssertUnwindSafe(write)).unwrap_or_else(|payload| {
+            let reason = panic_text(payload.as_ref());
+            Err(format!("cannot write {}: the program failed ({reason})", path.shown()))
+        })
+    }
+
+    /// Writes the outputs, calling `say` before each. A failed write does not stop the others. If no film could be
+    /// written, it is saved elsewhere, since its samples may have taken hours. If the film cannot be denoised as
     /// requested, the picture is that of the film, and a note says so.
     pub fn write(&self, film: &Film, status: &Status, mut say: impl FnMut(&Path)) -> Written {
-        let (render, mut written) = (&self.render, Written::default());
-        let denoised = match render.denoise.then(|| denoise::of_film(film)) {
+        let (options, mut written) = (&self.options, Written::default());
+        let denoised = match options.denoise.then(|| denoise::of_film(film)) {
             Some(Err(reason)) => {
                 written.notes.push(format!("the picture is not denoised: {reason}"));
                 None
@@ -128,50 +147,32 @@ impl Files {
             None => None,
         };
         written.denoised = denoised.as_ref().map(|denoised| denoised.error);
-        let picture = denoised.as_ref().map(|denoised| &denoised.film);
-        for place in &self.films {
-            say(&place.0);
-            match self.save(place, film, picture.filter(|_| render.writes(&place.0)), status) {
+        let description = self.described(film, status);
+        let mut of_picture = description.clone();
+        if let Some(error) = &written.denoised {
+            of_picture.set(key::DENOISED, error.words());
+        }
+        let mut is_film_kept = false;
+        for (output, file) in options.outputs.iter().zip(&self.films) {
+            say(&output.path);
+            let picture = denoised.as_ref().map(|denoised| &denoised.film).filter(|_| !output.is_checkpoint);
+            let description = if file.is_some() { &description } else { &of_picture };
+            match self.save(output, file.as_ref(), (film, picture), description) {
                 Ok(note) => {
-                    written.files.push(place.0.clone());
+                    is_film_kept |= file.is_some();
+                    written.files.push(output.path.clone());
                     written.notes.extend(note);
                 }
                 Err(reason) => written.failures.push(reason),
             }
         }
-        let is_film_kept = !written.files.is_empty();
-        let mut description = self.described(film, status);
-        for (out, format) in render.out.iter().filter(|(out, _)| !is_film(out)) {
-            if let Some(error) = &written.denoised {
-                description.set(key::DENOISED, error.words());
-            }
-            say(out);
-            let transfer = render.job.rules().transfer;
-            let write = || match *format {
-                OutputFormat::Exr => checkpoint::save_with(out, film, picture, &self.described(film, status))
-                    .map_err(|error| error.to_string()),
-                format => write_image_as(out, format, picture.unwrap_or(film), transfer, &description)
-                    .map_err(|error| error.to_string()),
-            };
-            match caught(out, write) {
-                Ok(()) => written.files.push(out.clone()),
-                Err(reason) => written.failures.push(reason),
-            }
-        }
         if !written.failures.is_empty() && !is_film_kept {
-            match rescue(&directories(render), &render.recipe.name, film, &description) {
+            match rescue(&directories(options), &options.recipe.name, film, &description) {
                 Ok(path) => {
                     let rescued = path.shown();
-                    written.failures.push(match render.checkpoint.as_ref().filter(|film| render.writes(film)) {
-                        Some(film) => format!(
-                            "the samples were saved in {rescued}; once {} can be written, move the film there and run the \
-                             same command again",
-                            film.shown()
-                        ),
-                        None => {
-                            format!("the samples were saved in {rescued}; continue with --resume {rescued}")
-                        }
-                    });
+                    written.failures.push(format!(
+                        "the samples were saved in {rescued}; continue with --resume {rescued}"
+                    ));
                     written.files.push(path);
                 }
                 Err(lost) => written.failures.push(lost),
@@ -181,46 +182,34 @@ impl Files {
     }
 
     fn described(&self, film: &Film, status: &Status) -> Description {
-        let Files { render, seconds_before, .. } = self;
-        let mut description = describe(&render.recipe, render.stage, film, status, *seconds_before);
-        description.set(key::COMMAND, command_line());
+        let Files { options, seconds_before, .. } = self;
+        let mut description = describe(&options.recipe, options.stage, film, status, *seconds_before);
+        description.set(key::COMMAND, &options.command);
         description
     }
 }
 
-/// Runs `write`, which writes `path`. A panic counts as a failure, because the samples can still be written elsewhere
-/// or later.
-fn caught<T>(path: &Path, write: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
-    catch_unwind(AssertUnwindSafe(write)).unwrap_or_else(|payload| {
-        let reason = panic_text(payload.as_ref());
-        Err(format!("cannot write {}: the program failed ({reason})", path.shown()))
-    })
-}
-
 /// The directories of the files that the render writes.
-fn directories(render: &BatchOptions) -> Vec<PathBuf> {
-    let directory = |path: &PathBuf| match path.parent() {
+fn directories(options: &BatchOptions) -> Vec<PathBuf> {
+    let directory = |output: &Output| match output.path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
         _ => PathBuf::from("."),
     };
-    render.files().map(directory).collect()
-}
-
-pub(super) fn is_film(path: &Path) -> bool {
-    OutputFormat::from_path(path).is_ok_and(|format| format == OutputFormat::Exr)
+    options.outputs.iter().map(directory).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::batch::tests::options;
+    use crate::film::checkpoint;
     use std::ops::Range;
 
     /// Writes a film of `render` with these samples to `path`.
     fn put(path: &Path, render: &BatchOptions, samples: Range<u64>) -> Film {
         let mut film = render.job.new_film();
         film.record(samples, 0).unwrap();
-        let description = Files::lock(render).unwrap().described(&film, &Status::default());
+        let description = Files::lock(render.clone()).unwrap().described(&film, &Status::default());
         checkpoint::save(path, &film, &description).unwrap();
         film
     }
@@ -228,7 +217,7 @@ mod tests {
     fn write_two_samples(render: &BatchOptions) -> (Film, Written, String) {
         let mut film = render.job.new_film();
         film.record(0..2, 0).unwrap();
-        let written = Files::lock(render).unwrap().write(&film, &Status::default(), |_| {});
+        let written = Files::lock(render.clone()).unwrap().write(&film, &Status::default(), |_| {});
         let failures = written.failures.join("; ");
         (film, written, failures)
     }
@@ -272,7 +261,7 @@ mod tests {
         {
             let render = options(flags);
             let held = SavedFilm { film: held.clone(), seconds: None };
-            let mut files = Files::lock(&render).unwrap();
+            let mut files = Files::lock(render.clone()).unwrap();
             assert!(files.check(render.resume.is_some().then_some(&held)).unwrap().is_empty());
             for (end, expected) in [(8, 32), (40, 40)] {
                 let mut film = render.job.new_film();
@@ -294,16 +283,14 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let film = directory.path().join("k.exr").to_str().unwrap().to_owned();
         put(Path::new(&film), &options(&[]), 0..32);
-        let warned = |flags: &[&str]| {
-            let render = options(flags);
-            Files::lock(&render).unwrap().check(None).unwrap().join("; ")
-        };
+        let check = |flags: &[&str]| Files::lock(options(flags)).unwrap().check(None);
+        let warned = |flags: &[&str]| check(flags).unwrap().join("; ");
         assert_eq!(warned(&["--out", &film, "--samples", "32"]), "");
         assert!(warned(&["--out", &film, "--samples", "8"]).contains("32 samples"));
         assert!(warned(&["--out", &film, "--sample-range", "1..64"]).contains("--out"));
         let other = warned(&["--out", &film, "--seed", "3"]);
         assert!(other.contains("of another picture") && other.contains("seed"), "{other}");
-        let render = options(&["--checkpoint", &film, "--samples", "64"]);
-        assert!(Files::lock(&render).unwrap().check(None).unwrap_err().to_string().contains("--continue"));
+        let refused = check(&["--checkpoint", &film, "--samples", "64"]).unwrap_err().to_string();
+        assert!(refused.contains("--continue"), "{refused}");
     }
 }

@@ -1,11 +1,10 @@
 //! `--frames`: the frames of an animation. Each is written as soon as it is rendered, and complete ones are kept, so
 //! the same command continues an interrupted run.
 
+use super::options::FramesOptions;
 use super::progress::display;
 use super::studio::{Event, Studio};
 use super::{Line, ended, report};
-use crate::cli::FramesOptions;
-use crate::cli::terminal::Display;
 use crate::film::key;
 use crate::job::output::write_image;
 use crate::job::recipe::Recipe;
@@ -17,6 +16,7 @@ use crate::system::failure::Failure;
 use crate::system::files::{ShownPath, check_writable, make_directory};
 use crate::system::interrupt::Interrupt;
 use crate::system::journal;
+use crate::system::terminal::Display;
 use anyhow::anyhow;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};

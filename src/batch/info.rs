@@ -1,14 +1,13 @@
 //! `weekender info`: the metadata of a film, picture or scene file.
 
 use super::{Line, SCHEMA, aligned, lines};
-use crate::cli::InfoOptions;
-use crate::cli::terminal::{print, write_figures};
 use crate::film::{CheckpointError, FilmHead, checkpoint, key};
 use crate::job::saved::{self, Kind};
 use crate::system::failure::Failure;
 use crate::system::files::STANDARD;
+use crate::system::terminal::{print, write_figures};
 use serde_json::{Value, json};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 const LINES: [Line; 11] = [
@@ -32,6 +31,14 @@ const LINES: [Line; 11] = [
     ("command", &["{command}"]),
     ("note", &["{note}"]),
 ];
+
+/// Options of `weekender info`.
+#[derive(Clone, Debug)]
+pub struct InfoOptions {
+    pub file: PathBuf,
+    /// Whether to print JSON.
+    pub json: bool,
+}
 
 /// Prints the metadata of a file.
 ///

@@ -32,7 +32,7 @@ fn write(files: &Files, film: &Film, status: &Status) -> Outcome {
 }
 
 impl Keeper {
-    /// Keeps the film in the file of `--checkpoint`.
+    /// Keeps the film in the checkpoint.
     pub fn new(files: &Arc<Files>) -> Keeper {
         let (files, asked) = (Arc::clone(files), files.held_before);
         Keeper { files, last: Instant::now(), asked, pending: None, kept: None }
@@ -48,7 +48,7 @@ impl Keeper {
             }
             None => None,
         };
-        if self.last.elapsed() >= self.files.render.every && status.samples_per_pixel > self.asked {
+        if self.last.elapsed() >= self.files.options.every && status.samples_per_pixel > self.asked {
             self.asked = status.samples_per_pixel;
             let (sender, receiver) = mpsc::channel();
             self.pending = Some(receiver);
@@ -106,7 +106,7 @@ mod tests {
         let path = directory.path().join("kept/film.exr");
         let flags = ["--checkpoint", path.to_str().unwrap(), "--every", "0.1s", "--samples", "4294967296"];
         let render = options(&flags);
-        let mut keeper = Keeper::new(&Arc::new(Files::lock(&render).unwrap()));
+        let mut keeper = Keeper::new(&Arc::new(Files::lock(render.clone()).unwrap()));
         let mut progressive = Progressive::spawn().unwrap();
         let backend = crate::backends::BackendChoice::Reference { threads: Some(1) };
         let mut warnings = Vec::new();

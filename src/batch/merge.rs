@@ -1,7 +1,5 @@
 //! `weekender merge`: adds films of the same picture, and says which of the requested samples are missing.
 
-use crate::cli::terminal::print;
-use crate::cli::{MergeOptions, check_paths, program};
 use crate::film::{CheckpointError, FilmSum, SampleRanges, checkpoint};
 use crate::job::output::{OutputFormat, write_image};
 use crate::job::recipe::file;
@@ -9,21 +7,38 @@ use crate::job::saved::{Replaced, same_job};
 use crate::progressive::describe::counted;
 use crate::system::console;
 use crate::system::failure::{FAILED, Failure};
-use crate::system::files::{FileLock, ShownPath, check_writable};
-use crate::system::shell::Shell;
-use anyhow::{bail, ensure};
+use crate::system::files::{FileLock, ShownPath};
+use crate::system::shell;
+use crate::system::terminal::print;
+use anyhow::{anyhow, bail};
 use std::collections::HashSet;
 use std::ffi::OsString;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+/// Options of `weekender merge`.
+#[derive(Clone, Debug)]
+pub struct MergeOptions {
+    pub films: Vec<PathBuf>,
+    /// Files of the result.
+    pub out: Vec<PathBuf>,
+    /// Samples per pixel that the picture should have.
+    pub samples: Option<u64>,
+    /// How commands call this program.
+    pub program: String,
+}
+
 /// Merges the films, or tells what is missing.
 ///
 /// # Errors
 /// [`Failure::Input`] if the films do not belong together, [`Failure::Run`] if the result cannot be written.
 pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
-    check(options).map_err(Failure::Input)?;
+    let mut seen = HashSet::new();
+    let is_again = |film: &&PathBuf| !seen.insert(film.canonicalize().unwrap_or_else(|_| film.to_path_buf()));
+    if let Some(film) = options.films.iter().find(is_again) {
+        return Err(Failure::Input(anyhow!("{} is named twice; name it once", film.shown())));
+    }
     let is_film = |out: &&PathBuf| matches!(OutputFormat::from_path(out), Ok(OutputFormat::Exr));
     let locks = options.out.iter().filter(is_film).map(|out| FileLock::take(out));
     let _locks = locks.collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
@@ -37,24 +52,10 @@ pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
     if let Some(all) = options.samples.filter(|_| !missing.is_empty()) {
         let count = missing.iter().map(|(range, _)| range.end - range.start).sum();
         lines.push(format!("{} of {all} per pixel missing; to render them:", counted(count, "sample")));
-        lines.extend(missing.iter().map(|(range, film)| command(range, film)));
+        lines.extend(missing.iter().map(|(range, film)| command(&options.program, range, film)));
     }
     print(&(lines.join("\n") + "\n" + &wrote)).map_err(Failure::Run)?;
     Ok(if missing.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(FAILED) })
-}
-
-/// Refuses inputs that are named twice, and outputs that cannot be written or would replace an input.
-fn check(MergeOptions { films, out, .. }: &MergeOptions) -> anyhow::Result<()> {
-    for out in out {
-        OutputFormat::from_path(out)?;
-        check_writable(out)?;
-    }
-    let mut seen = HashSet::new();
-    for film in films {
-        let is_new = seen.insert(film.canonicalize().unwrap_or_else(|_| film.clone()));
-        ensure!(is_new, "{} is named twice; name it once", film.shown());
-    }
-    check_paths(films.iter().map(PathBuf::as_path), out.iter().map(PathBuf::as_path))
 }
 
 /// A film that does not fit or cannot be read, and why.
@@ -122,10 +123,10 @@ fn write(out: &[PathBuf], sum: &FilmSum) -> Result<String, Failure> {
 }
 
 /// The command that adds samples to a film, or renders them again if it is damaged.
-fn command(Range { start, end }: &Range<u64>, film: &Path) -> String {
+fn command(program: &str, Range { start, end }: &Range<u64>, film: &Path) -> String {
     let [range, mut checkpoint] =
         [format!("--sample-range={start}..{end}"), "--checkpoint=".to_owned()].map(OsString::from);
     checkpoint.push(film);
-    let words = [program().into(), "--batch".into(), range, checkpoint, "--continue".into()];
-    Shell::HERE.line(words)
+    let words = [program.into(), "--batch".into(), range, checkpoint, "--continue".into()];
+    shell::line(words)
 }

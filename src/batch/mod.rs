@@ -6,19 +6,20 @@ pub mod merge;
 mod files;
 mod frames;
 mod keeping;
+mod options;
 mod picture;
 mod progress;
 mod studio;
 mod summary;
 
 pub use frames::{render_frames, write_frames};
+pub use options::{BatchOptions, FrameNames, FramesOptions, Output};
 pub use studio::{Event, Studio};
 pub use summary::{Line, aligned, lines};
 
 use crate::backends;
-use crate::cli::BatchOptions;
-use crate::cli::terminal::{self, print, print_beside};
 use crate::film::{CheckpointError, Film};
+use crate::job::output::OutputFormat;
 use crate::job::recipe::{Recipe, file};
 use crate::job::saved::{self, OpenError, SavedFilm};
 use crate::progressive::{EndReason, Phase, Status};
@@ -28,11 +29,13 @@ use crate::system::console;
 use crate::system::failure::Failure;
 use crate::system::files::{STANDARD, ShownPath, check_replaceable, check_writable, write_text};
 use crate::system::interrupt::Interrupt;
+use crate::system::terminal::{self, print, print_beside};
 use anyhow::Context;
 use files::Files;
 use serde_json::Value;
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::Duration;
 use summary::Summary;
 
@@ -43,25 +46,29 @@ use summary::Summary;
 /// are in its files; [`Failure::Run`] otherwise.
 pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     check_before(&options)?;
-    let mut files = Files::lock(&options)?;
-    let resumed = resumed(&options)?;
-    let beside = Some(Path::new(STANDARD)).filter(|standard| options.writes(standard));
-    let report =
-        |summary: &Summary| report(&summary.json(), &Summary::LINES, options.json.as_deref(), beside);
-    if let Some(saved) = resumed.as_ref().filter(|saved| is_complete(&options, &saved.film)) {
-        return report(&summary_of_complete(&options, &saved.film))
-            .map(|()| ExitCode::SUCCESS)
-            .map_err(Failure::Run);
+    let mut files = Files::lock(options)?;
+    let resumed = resumed(&files.options)?;
+    if let Some(saved) = resumed.as_ref().filter(|saved| is_complete(&files.options, &saved.film)) {
+        let reported = report_picture(&summary_of_complete(&files.options, &saved.film));
+        return reported.map(|()| ExitCode::SUCCESS).map_err(Failure::Run);
     }
     let warnings = files.check(resumed.as_ref())?;
+    let (files, film) = (Arc::new(files), resumed.map(|saved| saved.film));
+    let options = &files.options;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let mut studio = Studio::open(&options.backend, &interrupt)?;
     if let Some(path) = &options.save_scene {
         write_text(path, &file::to_toml(&options.recipe)).map_err(Failure::run)?;
     }
-    let film = resumed.map(|saved| saved.film);
-    let (summary, outcome) = picture::render(&options, files, film, &warnings, &mut studio, &interrupt);
-    ended(outcome.err(), report(&summary), &interrupt)
+    let (summary, outcome) = picture::render(&files, film, &warnings, &mut studio, &interrupt);
+    ended(outcome.err(), report_picture(&summary), &interrupt)
+}
+
+fn report_picture(summary: &Summary) -> anyhow::Result<()> {
+    let BatchOptions { outputs, json, .. } = summary.render;
+    let mut paths = outputs.iter().map(|output| output.path.as_path());
+    let beside = paths.find(|path| *path == Path::new(STANDARD));
+    report(&summary.json(), &Summary::LINES, json.as_deref(), beside)
 }
 
 /// The film to continue. A damaged one of `--continue` is renamed, and rendered again.
@@ -69,7 +76,7 @@ fn resumed(options: &BatchOptions) -> Result<Option<SavedFilm>, Failure> {
     let Some(path) = &options.resume else { return Ok(None) };
     match saved::resume(path, &options.job) {
         Err(OpenError::Film(damaged @ CheckpointError::Damaged { .. }))
-            if options.checkpoint.as_ref() == Some(path) =>
+            if options.checkpoint() == Some(path.as_path()) =>
         {
             let mut aside = path.as_os_str().to_owned();
             aside.push(".damaged");
@@ -86,7 +93,7 @@ fn resumed(options: &BatchOptions) -> Result<Option<SavedFilm>, Failure> {
 /// Whether the continued film has all samples and is all that would be written.
 fn is_complete(options: &BatchOptions, film: &Film) -> bool {
     options.save_scene.is_none()
-        && options.files().all(|file| options.resume.as_ref() == Some(file))
+        && options.outputs.iter().all(|output| options.resume.as_ref() == Some(&output.path))
         && film.samples().first_gap(options.plan.range(), u64::MAX).is_none()
 }
 
@@ -98,7 +105,8 @@ fn summary_of_complete<'a>(render: &'a BatchOptions, film: &Film) -> Summary<'a>
         error: film.error(),
         ..Status::default()
     };
-    let (samples, files) = (Some(film.samples().to_string()), render.files().cloned().collect());
+    let files = render.outputs.iter().map(|output| output.path.clone()).collect();
+    let samples = Some(film.samples().to_string());
     Summary { render, samples, status, denoised: None, files, writing: Duration::ZERO }
 }
 
@@ -142,10 +150,16 @@ pub fn save_scene(recipe: &Recipe, path: &Path) -> Result<ExitCode, Failure> {
 
 /// Checks everything that could otherwise fail after rendering.
 fn check_before(options: &BatchOptions) -> Result<(), Failure> {
-    for path in options.files().chain(&options.save_scene).chain(&options.json) {
-        let check = if files::is_film(path) { check_replaceable } else { check_writable };
-        check(path).map_err(Failure::input)?;
+    for output in &options.outputs {
+        let check = if output.format == OutputFormat::Exr { check_replaceable } else { check_writable };
+        check(&output.path).map_err(Failure::input)?;
     }
+    options
+        .save_scene
+        .iter()
+        .chain(&options.json)
+        .try_for_each(|path| check_writable(path))
+        .map_err(Failure::input)?;
     options.job.check_memory(1).map_err(Failure::input)
 }
 

@@ -2,13 +2,12 @@
 
 use super::files::{Files, Written};
 use super::keeping::Keeper;
+use super::options::BatchOptions;
 use super::progress::{STEPS, display, show};
 use super::studio::{Event, Studio};
 use super::summary::Summary;
-use crate::cli::BatchOptions;
 use crate::film::Film;
 use crate::progressive::{Phase, Status};
-use crate::system::clock::Instant;
 use crate::system::failure::Failure;
 use crate::system::files::ShownPath;
 use crate::system::interrupt::Interrupt;
@@ -16,24 +15,24 @@ use crate::system::journal;
 use anyhow::anyhow;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Renders a picture, from the film to continue, and writes its files. On any failure, the samples rendered so far are
 /// kept. `warnings` are printed before it begins.
 pub(super) fn render<'a>(
-    render: &'a BatchOptions,
-    files: Files,
+    files: &'a Arc<Files>,
     film: Option<Film>,
     warnings: &[String],
     studio: &mut Studio,
     interrupt: &Interrupt,
 ) -> (Summary<'a>, Result<(), Failure>) {
-    let files = Arc::new(files);
-    let mut keeper = render.checkpoint.as_ref().map(|_| Keeper::new(&files));
-    let mut display = display(render.progress, STEPS, &render.recipe.name);
+    let options = &files.options;
+    let mut keeper = options.checkpoint().map(|_| Keeper::new(files));
+    let mut display = display(options.progress, STEPS, &options.recipe.name);
     let begin = Instant::now();
     warnings.iter().for_each(|warning| display.warn(warning));
     let (mut status, film) =
-        studio.render(render.job.clone(), render.plan.clone(), film, |event| match event {
+        studio.render(options.job.clone(), options.plan.clone(), film, |event| match event {
             Event::Warning(warning) => display.warn(warning),
             Event::Stopping => {
                 let hint = "; press Ctrl-C again to exit at once without writing";
@@ -44,10 +43,10 @@ pub(super) fn render<'a>(
             Event::Status(progressive, status) => {
                 let warning = keeper.as_mut().and_then(|keeper| keeper.look(progressive, status));
                 warning.iter().for_each(|warning| display.warn(warning));
-                show(&mut display, &render.plan, status, begin.elapsed());
+                show(&mut display, &options.plan, status, begin.elapsed());
             }
         });
-    let names: Vec<String> = render.files().map(ShownPath::shown).collect();
+    let names: Vec<String> = options.outputs.iter().map(|output| output.path.shown()).collect();
     let writing = interrupt.while_writing(names.join(" and "));
     let begin = Instant::now();
     let kept = keeper.and_then(Keeper::finish);
@@ -64,15 +63,15 @@ pub(super) fn render<'a>(
     if matches!(status.phase, Phase::Failed(_)) {
         journal::write_report();
     }
-    let outcome = outcome(render, &status, film.as_ref(), &written, kept);
+    let outcome = outcome(options, &status, film.as_ref(), &written, kept);
     let samples = film.map(|film| film.samples().to_string());
     let (denoised, writing) = (written.denoised, begin.elapsed());
-    (Summary { render, samples, status, denoised, files: written.files, writing }, outcome)
+    (Summary { render: options, samples, status, denoised, files: written.files, writing }, outcome)
 }
 
-/// The result of a render and of writing its files. `kept` is the number of samples per pixel in the checkpoint file.
+/// The result of a render and of writing its files. `kept` is the number of samples per pixel in the checkpoint.
 fn outcome(
-    render: &BatchOptions,
+    options: &BatchOptions,
     status: &Status,
     film: Option<&Film>,
     written: &Written,
@@ -83,7 +82,7 @@ fn outcome(
         return if failures.is_empty() { Ok(()) } else { Err(Failure::Run(anyhow!(failures))) };
     };
     let held = film.map_or(0, Film::sample_count);
-    Err(match (kept, &render.checkpoint) {
+    Err(match (kept, options.checkpoint()) {
         _ if !failures.is_empty() => Failure::Run(anyhow!("{reason}; {failures}")),
         _ if held > 0 => {
             let files = written.files.iter().map(ShownPath::shown).collect::<Vec<_>>().join(", ");
@@ -144,8 +143,8 @@ mod tests {
         let interrupt = Interrupt::unheard();
         let mut studio =
             Studio::with_factory(Box::new(|_| Ok(Box::new(Failing))), &options.backend, &interrupt);
-        let files = Files::lock(&options).unwrap();
-        let (_, outcome) = render(&options, files, None, &[], &mut studio, &interrupt);
+        let files = Arc::new(Files::lock(options.clone()).unwrap());
+        let (_, outcome) = render(&files, None, &[], &mut studio, &interrupt);
         let failure = outcome.unwrap_err();
         let message = failure.to_string();
         assert!(matches!(failure, Failure::BrokeOff(_)), "{message}");

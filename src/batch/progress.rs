@@ -1,9 +1,8 @@
 //! The progress of a picture: samples, speed and remaining time.
 
-use crate::cli::ProgressChoice;
-use crate::cli::terminal::Display;
 use crate::progressive::describe::seconds;
 use crate::progressive::{Phase, Plan, Status};
+use crate::system::terminal::{Display, ProgressChoice};
 use std::time::Duration;
 
 /// Steps of the bar of a picture.

@@ -3,59 +3,18 @@
 use super::check_paths;
 use super::render::{AnimationFlags, RenderFlags};
 use super::sources;
-use super::values::ProgressChoice;
-use crate::backends::BackendChoice;
-use crate::job::recipe::Recipe;
-use crate::job::render::RenderJob;
-use crate::scene::animation::{CameraPath, FrameNames, Turn};
-use crate::stages::Stage;
+use crate::batch::{FrameNames, FramesOptions};
+use crate::scene::animation::CameraPath;
 use crate::system::files::ShownPath;
 use anyhow::{Context, Result, bail};
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Options of `--batch --frames`.
-#[derive(Debug)]
-pub struct FramesOptions {
-    /// The scene and its settings. Each frame replaces its camera.
-    pub recipe: Recipe,
-    /// The validated job of the recipe.
-    pub job: RenderJob,
-    /// The stage that it comes from.
-    pub stage: Option<&'static Stage>,
-    /// How the camera moves. The camera of every frame is valid.
-    pub path: CameraPath,
-    /// Numbers of the frames, at least one.
-    pub frames: Range<u32>,
-    /// The files of the frames.
-    pub names: FrameNames,
-    pub backend: BackendChoice,
-    pub progress: ProgressChoice,
-    pub json: Option<PathBuf>,
-    /// The command line, if there is one.
-    pub command: Option<String>,
-}
-
-impl FramesOptions {
-    /// Checks the camera of every frame.
-    ///
-    /// # Errors
-    /// The first frame that cannot be rendered, and why.
-    pub fn check(&self) -> Result<()> {
-        let FramesOptions { job, path, frames, .. } = self;
-        for frame in frames.clone() {
-            job.seen_by(path.camera(frame), *job.settings()).with_context(|| format!("frame {frame}"))?;
-        }
-        Ok(())
-    }
-}
-
 /// Validates the flags of an animation.
-pub(super) fn frames(flags: RenderFlags) -> Result<FramesOptions> {
+pub(super) fn frames(flags: RenderFlags, command: String) -> Result<FramesOptions> {
     let (chosen, job) = sources::picture(&flags.picture, &flags.samples, None)?;
     let (recipe, AnimationFlags { frames, turntable }) = (&chosen.recipe, flags.animation);
     let path = match turntable {
-        Some(turn) => CameraPath::Turntable { start: recipe.camera, turn },
+        Some(frames) => CameraPath::Turntable { start: recipe.camera, frames },
         None if recipe.keyframes.is_empty() => {
             bail!("--frames needs --turntable: the scene has no [[keyframes]], so the camera would not move")
         }
@@ -63,15 +22,9 @@ pub(super) fn frames(flags: RenderFlags) -> Result<FramesOptions> {
             "flags of the camera such as --look-from and --vfov cannot be used with the keyframes of the scene file: \
              they set the camera; change them, or use --turntable"
         ),
-        None => CameraPath::Keyframes { still: recipe.camera, keyframes: recipe.keyframes.clone() },
+        None => CameraPath::Keyframes(recipe.keyframes.clone()),
     };
-    let frames = match (frames, turntable) {
-        (Some(frames), _) => frames,
-        (None, Some(Turn::FramesPerTurn(count))) => 0..count,
-        (None, _) => {
-            bail!("--turntable in degrees needs --frames A..B: a turn may not be a whole number of frames")
-        }
-    };
+    let frames = frames.unwrap_or(0..turntable.unwrap_or_default());
     let [out] = flags.files.out.as_slice() else {
         bail!(
             "an animation needs --batch and one --out: it writes many pictures; name a directory, or a pattern such as \
@@ -93,7 +46,7 @@ pub(super) fn frames(flags: RenderFlags) -> Result<FramesOptions> {
         backend: flags.backend,
         progress: flags.progress,
         json: flags.files.json,
-        command: Some(super::command_line()),
+        command: Some(command),
     };
     options.check()?;
     Ok(options)

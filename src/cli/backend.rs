@@ -37,9 +37,6 @@ struct BackendFlags {
     threads: Option<usize>,
 }
 
-/// The flags that choose a device, for commands and windows that ask whether any is given.
-pub(super) const FLAGS: [&str; 5] = ["device", "adapter", "simd", "isa", "threads"];
-
 impl BackendFlags {
     fn choice(self) -> Result<BackendChoice, String> {
         let (isa, lanes, threads) = (self.isa, self.simd, self.threads);

@@ -1,12 +1,13 @@
 //! The flags of `weekender bench`.
 
-use super::values::{Auto, ProgressChoice, parse_levels, parse_seconds, parse_size, whole};
+use super::values::{Auto, parse_levels, parse_seconds, parse_size, whole};
 use super::{check_outputs, sources};
 use crate::job::recipe::Recipe;
 use crate::job::render::{RenderJob, SAMPLE_LIMIT, SamplerKind};
 use crate::render_cpu::Isa;
 use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
+use crate::system::terminal::ProgressChoice;
 use anyhow::Result;
 use clap::Args;
 use std::path::PathBuf;
@@ -168,12 +169,12 @@ impl BenchOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{Command, Request, parse};
+    use crate::cli::{Request, parse};
 
     fn options(words: &str) -> BenchOptions {
         let line = format!("weekender bench --scene metals --isa portable --threads 1 {words}");
         match parse(line.split(' ').map(Into::into)).unwrap() {
-            Request::Command(Command::Bench(options)) => *options,
+            Request::Bench(options) => *options,
             other => panic!("{other:?}"),
         }
     }

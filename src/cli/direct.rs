@@ -1,32 +1,44 @@
 //! Commands whose flags are their options: merge, info, check, compare and stress.
 
-use super::values::{Auto, ProgressChoice, parse_levels, whole};
-use crate::job::output::Encoding;
+use super::check_outputs;
+use super::sources::Names;
+use super::values::{Auto, parse_levels, whole};
+use crate::batch::merge::MergeOptions;
+use crate::job::output::{Encoding, OutputFormat};
 use crate::job::render::SAMPLE_LIMIT;
 use crate::render_cpu::Isa;
 use crate::stages::{Stage, Transfer};
-use clap::builder::PossibleValue;
+use crate::system::terminal::ProgressChoice;
+use anyhow::Result;
+use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
-/// Options of `weekender merge`.
 #[derive(Clone, Debug, Args)]
-pub struct MergeOptions {
+pub(super) struct MergeFlags {
     /// Film files (.exr), as --checkpoint, --out and merge write them
     #[arg(required = true, num_args = 1.., value_name = "FILM")]
-    pub films: Vec<PathBuf>,
+    films: Vec<PathBuf>,
     /// Where the result is written: .exr for the film, .png or .ppm for the picture; may be repeated
     #[arg(long, value_name = "FILE", required_unless_present = "samples")]
-    pub out: Vec<PathBuf>,
+    out: Vec<PathBuf>,
     /// Samples per pixel that the picture should have, 1 to 4294967296: list which are missing, which films are damaged
     /// or do not fit, and the commands that render what is missing
     #[arg(long, value_name = "COUNT", value_parser = whole::<u64>(1..=SAMPLE_LIMIT))]
-    pub samples: Option<u64>,
+    samples: Option<u64>,
 }
 
-/// Options of `weekender info`.
+impl MergeFlags {
+    pub fn options(self, program: String) -> Result<MergeOptions> {
+        let MergeFlags { films, out, samples } = self;
+        out.iter().try_for_each(|out| OutputFormat::from_path(out).map(drop))?;
+        check_outputs(films.iter().map(PathBuf::as_path), out.iter().map(PathBuf::as_path))?;
+        Ok(MergeOptions { films, out, samples, program })
+    }
+}
+
 #[derive(Clone, Debug, Args)]
-pub struct InfoOptions {
+pub(super) struct InfoFlags {
     /// A film, picture or scene file
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
@@ -43,7 +55,7 @@ pub struct CheckOptions {
     #[arg(required = true, num_args = 1.., value_name = "PICTURE")]
     pub pictures: Vec<PathBuf>,
     /// The stage of the book that they show, by name or section [default: the one that each looks like]
-    #[arg(long, value_name = "STAGE", value_parser = Stage::find)]
+    #[arg(long, value_name = "STAGE", value_parser = Names::of_stages().try_map(|id| Stage::find(&id.to_string_lossy())))]
     pub stage: Option<&'static Stage>,
     /// Check again after each change, even while the picture is being written, until Ctrl-C
     #[arg(long, conflicts_with = "out")]

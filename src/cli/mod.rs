@@ -1,8 +1,6 @@
 //! The command line, parsed and validated.
 
 mod animation;
-pub mod terminal;
-
 mod backend;
 mod bench;
 mod diff;
@@ -12,22 +10,26 @@ mod render;
 mod report;
 mod sources;
 mod values;
+#[cfg(feature = "window")]
+mod window;
 
-pub use animation::FramesOptions;
 pub use bench::{BenchOptions, BenchScene};
 pub use diff::DiffOptions;
-pub use direct::{CheckOptions, CompareOptions, InfoOptions, MergeOptions, StressOptions};
+pub use direct::{CheckOptions, CompareOptions, StressOptions};
 pub use paths::{check_outputs, check_paths};
-pub use render::{BatchOptions, WindowOptions};
 pub use report::ReportOptions;
-pub use values::{DrawWith, ProgressChoice};
+#[cfg(feature = "window")]
+pub use window::{DrawWith, WindowOptions};
 
+use crate::batch::info::InfoOptions;
+use crate::batch::merge::MergeOptions;
+use crate::batch::{BatchOptions, FramesOptions};
 use crate::job::recipe::Recipe;
 use crate::system::failure::{EXIT_CODES, Failure};
-use crate::system::shell::Shell;
+use crate::system::journal;
+use crate::system::shell;
 use anyhow::Result;
 use clap::error::{ContextKind, ContextValue};
-use clap::parser::ValueSource;
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -37,6 +39,7 @@ use std::path::{Path, PathBuf};
 pub enum Request {
     /// Print the version.
     Version,
+    #[cfg(feature = "window")]
     Window(Box<WindowOptions>),
     /// List scenes, stages and devices.
     List,
@@ -44,7 +47,14 @@ pub enum Request {
     SaveScene(Box<Recipe>, PathBuf),
     Frames(Box<FramesOptions>),
     Batch(Box<BatchOptions>),
-    Command(Command),
+    Merge(MergeOptions),
+    Info(InfoOptions),
+    Bench(Box<BenchOptions>),
+    Diff(Box<DiffOptions>),
+    Compare(Box<CompareOptions>),
+    Report(Box<ReportOptions>),
+    Stress(Box<StressOptions>),
+    Check(Box<CheckOptions>),
 }
 
 /// The path tracer of "Ray Tracing in One Weekend", as a viewer and a headless renderer.
@@ -64,9 +74,8 @@ struct Raw {
     _command: Option<Command>,
 }
 
-/// A subcommand with its options.
 #[derive(Debug, Subcommand)]
-pub enum Command {
+enum Command {
     /// Measure the speed of this machine, compared with a plain C program: tables and JSON
     ///
     /// Rows take turns, after an untimed warm-up. Medians are shown with minimum and maximum. Reading, preparing and
@@ -76,9 +85,9 @@ pub enum Command {
     ///
     /// With --samples, films that are damaged or do not fit are left out, and what is missing is listed with the commands
     /// that render it; the exit code is then 1. It is 0 if nothing is missing, and 2 if nothing could be merged.
-    Merge(MergeOptions),
+    Merge(direct::MergeFlags),
     /// Show the metadata of a film, picture or scene file
-    Info(InfoOptions),
+    Info(direct::InfoFlags),
     /// Show a path as two backends trace it, side by side, and where the two diverge
     ///
     /// The exit code is 0 if the two agree, 1 if they differ and 2 if they could not be compared.
@@ -112,36 +121,46 @@ pub fn command() -> clap::Command {
     Raw::command().mut_args(negative).mut_subcommands(move |command| command.mut_args(negative))
 }
 
-/// The file of `--log`, needed before the flags are validated. `None` if clap does not accept the command line;
-/// [`parse`] then says what is wrong.
-pub fn log_file(arguments: impl IntoIterator<Item = OsString>) -> Option<PathBuf> {
-    matches(arguments).ok()?.get_one::<PathBuf>("log").cloned()
-}
-
-/// Parses the command line; the first argument is the program's name.
+/// Parses the command line and starts the log that it asks for. The first argument is the program's name.
 ///
 /// # Errors
-/// [`Failure::CommandLine`] or [`Failure::Input`]; nothing has been written in either case.
+/// [`Failure::CommandLine`] or [`Failure::Input`]; nothing but the log has been written in either case.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, Failure> {
-    let matches = matches(arguments).map_err(|error| Failure::CommandLine(hinted(error)))?;
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let matches = matches(arguments.clone()).map_err(|error| Failure::CommandLine(hinted(error)))?;
+    journal::start(matches.get_one::<PathBuf>("log").map(PathBuf::as_path)).map_err(Failure::Input)?;
     if matches.get_flag("version") {
         return Ok(Request::Version);
     }
     // The flags of a subcommand alone: reading `--device auto` asks the system for its GPUs.
     if matches.subcommand().is_none() {
         let flags = render::RenderFlags::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
+        let command = recorded(&arguments);
         let request = match flags.animation.is_given() && !flags.list {
-            true => animation::frames(flags).map(|options| Request::Frames(Box::new(options))),
-            false => render::request(flags, &matches),
+            true => animation::frames(flags, command).map(|options| Request::Frames(Box::new(options))),
+            false => render::request(flags, &matches, command),
         };
         return request.map_err(Failure::Input);
     }
-    Ok(Request::Command(Command::from_arg_matches(&matches).map_err(Failure::CommandLine)?))
+    Ok(match Command::from_arg_matches(&matches).map_err(Failure::CommandLine)? {
+        Command::Merge(flags) => {
+            Request::Merge(flags.options(called(arguments.first())).map_err(Failure::Input)?)
+        }
+        Command::Info(direct::InfoFlags { file, json }) => Request::Info(InfoOptions { file, json }),
+        Command::Report(mut options) => {
+            options.command = recorded(&arguments);
+            Request::Report(options)
+        }
+        Command::Bench(options) => Request::Bench(options),
+        Command::Diff(options) => Request::Diff(options),
+        Command::Compare(options) => Request::Compare(options),
+        Command::Stress(options) => Request::Stress(options),
+        Command::Check(options) => Request::Check(options),
+    })
 }
 
 /// The arguments as clap reads them. A file in place of a command, as file managers pass it, opens in the window.
-fn matches(arguments: impl IntoIterator<Item = OsString>) -> Result<ArgMatches, clap::Error> {
-    let mut arguments: Vec<OsString> = arguments.into_iter().collect();
+fn matches(mut arguments: Vec<OsString>) -> Result<ArgMatches, clap::Error> {
     let error = match command().try_get_matches_from(&arguments) {
         Ok(matches) => return Ok(matches),
         Err(error) => error,
@@ -159,8 +178,13 @@ fn matches(arguments: impl IntoIterator<Item = OsString>) -> Result<ArgMatches, 
     command().try_get_matches_from(arguments)
 }
 
-/// Adds a tip if the value of a flag has a decimal comma.
+/// Adds a tip if the value of a flag has a decimal comma, and replaces a long list of values.
 fn hinted(mut error: clap::Error) -> clap::Error {
+    let is_long = |values: &ContextValue| matches!(values, ContextValue::Strings(names) if names.len() > 9);
+    if error.get(ContextKind::ValidValue).is_some_and(is_long) {
+        error.remove(ContextKind::ValidValue);
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec!["--list shows all".into()]));
+    }
     let value = error.get(ContextKind::InvalidValue).map(ToString::to_string).unwrap_or_default();
     let with_point = value.replacen(',', ".", 1);
     if value.contains(',') && with_point.parse::<f64>().is_ok() && !error.to_string().contains("commas") {
@@ -170,31 +194,18 @@ fn hinted(mut error: clap::Error) -> clap::Error {
     error
 }
 
-fn is_given(matches: &ArgMatches, flag: &str) -> bool {
-    matches.value_source(flag) == Some(ValueSource::CommandLine)
-}
-
 /// How commands call this program: by name if the shell found it, otherwise with its directory.
-pub fn program() -> String {
-    called(wild::args_os().next())
-}
-
-fn called(first: Option<OsString>) -> String {
+fn called(first: Option<&OsString>) -> String {
     const NAME: &str = "weekender";
-    let is_path = first.is_some_and(|first| Path::new(&first).components().count() > 1);
+    let is_path = first.is_some_and(|first| Path::new(first).components().count() > 1);
     let path = if is_path { std::env::current_exe().ok() } else { None };
     path.and_then(|path| path.to_str().map(str::to_owned)).unwrap_or_else(|| NAME.to_owned())
 }
 
-/// The command line of this run, as pictures record it.
-pub fn command_line() -> String {
-    recorded(wild::args_os())
-}
-
 /// The command line quoted for a shell, with file names instead of paths: pictures are shared, and the directories of
 /// their authors are private.
-fn recorded(arguments: impl Iterator<Item = OsString>) -> String {
-    let shortened = |word: OsString| {
+fn recorded(arguments: &[OsString]) -> String {
+    let shortened = |word: &OsString| {
         let (flag, value) = match word.to_str().and_then(|word| word.split_once('=')) {
             Some((flag, value)) if flag.starts_with("--") => (flag, OsStr::new(value)),
             _ => ("", word.as_os_str()),
@@ -204,10 +215,10 @@ fn recorded(arguments: impl Iterator<Item = OsString>) -> String {
         match path.file_name().filter(|_| path.has_root() || is_in_directory) {
             Some(name) if flag.is_empty() => name.to_owned(),
             Some(name) => [OsStr::new(flag), "=".as_ref(), name].into_iter().collect(),
-            None => word,
+            None => word.clone(),
         }
     };
-    Shell::HERE.line(std::iter::once("weekender".into()).chain(arguments.skip(1).map(shortened)))
+    shell::line(std::iter::once("weekender".into()).chain(arguments.iter().skip(1).map(shortened)))
 }
 
 #[cfg(test)]

@@ -1,21 +1,19 @@
 //! Rendering, in the window or to files.
 
+use super::Request;
 use super::sources::{self, ChosenRecipe, PictureFlags, SampleFlags};
-use super::values::{
-    DrawWith, ProgressChoice, file_ending, parse_duration, parse_noise_target, parse_seconds, parse_turn,
-    range,
-};
-use super::{Request, backend, is_given};
+use super::values::{file_ending, parse_duration, parse_noise_target, parse_seconds, range, whole};
+#[cfg(feature = "window")]
+use super::window;
 use crate::backends::BackendChoice;
+use crate::batch::{BatchOptions, Output};
 use crate::film::checkpoint;
-use crate::job::output::{OutputFormat, is_named_picture, read_description};
+use crate::job::output::OutputFormat;
 use crate::job::recipe::{Recipe, plain_name};
-use crate::job::render::RenderJob;
-use crate::job::saved;
 use crate::progressive::{NoiseOf, Plan, Stop};
-use crate::scene::animation::{FRAME_LIMIT, Turn};
-use crate::stages::Stage;
+use crate::scene::animation::FRAME_LIMIT;
 use crate::system::files::{STANDARD, ShownPath};
+use crate::system::terminal::ProgressChoice;
 use anyhow::{Result, bail, ensure};
 use clap::{ArgGroup, ArgMatches, Args};
 use std::ops::Range;
@@ -30,21 +28,12 @@ pub(super) struct RenderFlags {
     /// List scenes, stages and devices
     #[arg(long)]
     pub list: bool,
-    /// How to draw the window; auto: wgpu, or gl without a hardware adapter
-    #[arg(long, value_enum, default_value = "auto", conflicts_with = "batch")]
-    pub draw_with: DrawWith,
+    #[cfg(feature = "window")]
+    #[command(flatten)]
+    pub window: window::WindowFlags,
     /// Open this film, picture or scene file in the window; FILE without a flag does the same. A picture of another program is checked
     #[arg(long, value_name = "FILE", conflicts_with_all = ["batch", "list", "scene", "stage", "resume", "AnimationFlags"])]
     pub open: Option<PathBuf>,
-    /// Open the window with its default picture instead of the last one shown
-    #[arg(long, conflicts_with = "batch")]
-    pub fresh: bool,
-    /// Autosave interval of the window, 0.1s to 30d of tracing
-    #[arg(long, value_name = "DURATION", value_parser = parse_duration, default_value = "60s", hide = true)]
-    pub autosave_every: Duration,
-    /// Write the times of the window's frames to a file
-    #[arg(long, value_name = "FILE", hide = true)]
-    pub frame_log: Option<PathBuf>,
     /// Show progress on standard error; auto: if it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,
@@ -67,10 +56,10 @@ pub(super) struct RenderFlags {
 pub(super) struct StopFlags {
     /// Seconds of rendering
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, conflicts_with = "AnimationFlags")]
-    time_limit: Option<f64>,
+    pub time_limit: Option<f64>,
     /// Estimated error: root mean square over pixels and channels, linear radiance
     #[arg(long, value_name = "RMSE", value_parser = parse_noise_target, conflicts_with = "AnimationFlags")]
-    noise_target: Option<f64>,
+    pub noise_target: Option<f64>,
 }
 
 #[derive(Debug, Args)]
@@ -80,11 +69,10 @@ pub(super) struct AnimationFlags {
     /// file [default with --turntable: one turn]
     #[arg(long, value_name = "A..B", value_parser = range(FRAME_LIMIT, "0..120"), group = "moving")]
     pub frames: Option<Range<u32>>,
-    /// Move the camera around --look-at, about --vup: the number of frames per turn, or the degrees per frame, such as
-    /// 1.5deg or -3deg [without a value: 120 frames]
-    #[arg(long, value_name = "FRAMES|DEGREES", value_parser = parse_turn, num_args = 0..=1,
+    /// Move the camera around --look-at, about --vup, in this number of frames, 2 to 100000 [without a value: 120]
+    #[arg(long, value_name = "FRAMES", value_parser = whole::<u32>(2..=FRAME_LIMIT.into()), num_args = 0..=1,
           require_equals = true, default_missing_value = "120", group = "moving")]
-    pub turntable: Option<Turn>,
+    pub turntable: Option<u32>,
 }
 
 impl AnimationFlags {
@@ -123,7 +111,7 @@ pub(super) struct FileFlags {
     every: Duration,
     /// Continue a film; without --scene and --stage, with its own scene
     #[arg(long, value_name = "FILE.exr", value_parser = file_ending(".exr"), conflicts_with = "AnimationFlags")]
-    resume: Option<PathBuf>,
+    pub resume: Option<PathBuf>,
     /// Write the scene, with the changes of the other flags, as a scene file
     #[arg(long, value_name = "FILE.toml", conflicts_with = "AnimationFlags")]
     save_scene: Option<PathBuf>,
@@ -132,93 +120,12 @@ pub(super) struct FileFlags {
     pub json: Option<PathBuf>,
 }
 
-/// Options of the window.
-#[derive(Clone, Debug)]
-pub struct WindowOptions {
-    /// The picture at the start.
-    pub recipe: Recipe,
-    /// The picture without the changes of the flags.
-    pub unchanged: Recipe,
-    /// The stage that it comes from.
-    pub stage: Option<&'static Stage>,
-    /// The scene file that it comes from.
-    pub file: Option<PathBuf>,
-    /// Whether a flag set the size of the picture.
-    pub is_size_given: bool,
-    /// Whether flags chose or changed the picture.
-    pub is_picture_given: bool,
-    pub backend: BackendChoice,
-    /// Whether flags chose the backend.
-    pub is_device_given: bool,
-    /// When to stop; `None` without such flags.
-    pub stop: Option<Stop>,
-    /// The film to resume.
-    pub resume: Option<PathBuf>,
-    /// The picture of another program to check.
-    pub mine: Option<PathBuf>,
-    /// Whether the picture was read from a film or another picture.
-    pub is_saved: bool,
-    /// Whether to open the default picture instead of the last one.
-    pub is_fresh: bool,
-    /// Tracing time between autosaves.
-    pub autosave_every: Duration,
-    /// The directory for autosaves; `None` disables them.
-    pub state_directory: Option<PathBuf>,
-    pub draw_with: DrawWith,
-    /// File for the times of the window's frames.
-    pub frame_log: Option<PathBuf>,
-}
-
-/// Options of `--batch`.
-#[derive(Clone, Debug)]
-pub struct BatchOptions {
-    pub recipe: Recipe,
-    /// The validated job of the recipe.
-    pub job: RenderJob,
-    /// The stage that it comes from.
-    pub stage: Option<&'static Stage>,
-    /// Which samples, and when to stop.
-    pub plan: Plan,
-    /// Whether the picture is denoised.
-    pub denoise: bool,
-    /// Files of the picture.
-    pub out: Vec<(PathBuf, OutputFormat)>,
-    /// File of the film, if it is kept.
-    pub checkpoint: Option<PathBuf>,
-    /// Interval at which the film is written.
-    pub every: Duration,
-    /// The film to resume.
-    pub resume: Option<PathBuf>,
-    /// A scene file to write as well.
-    pub save_scene: Option<PathBuf>,
-    pub backend: BackendChoice,
-    pub progress: ProgressChoice,
-    pub json: Option<PathBuf>,
-}
-
-impl BatchOptions {
-    /// Whether `--out` names this file.
-    pub fn writes(&self, path: &Path) -> bool {
-        self.out.iter().any(|(out, _)| out == path)
-    }
-
-    /// The files of the picture and of its film.
-    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
-        let film = self.checkpoint.iter().filter(|film| !self.writes(film));
-        self.out.iter().map(|(out, _)| out).chain(film)
-    }
-}
-
-/// Validates the flags without a subcommand.
-pub(super) fn request(mut flags: RenderFlags, matches: &ArgMatches) -> Result<Request> {
-    if flags.list {
-        return Ok(Request::List);
-    }
-    let (mut picture, mut mine) = (None, None);
+/// Validates the flags without a subcommand. `command` is the command line.
+pub(super) fn request(mut flags: RenderFlags, matches: &ArgMatches, command: String) -> Result<Request> {
+    let mut picture = None;
     match flags.open.take() {
         Some(path) if is_scene_file(&path) => flags.picture.scene = Some(path.into()),
         Some(path) if checkpoint::read_head(&path).is_ok() => flags.files.resume = Some(path),
-        Some(path) if is_others(&path) => mine = Some(path),
         other => picture = other,
     }
     let files = &mut flags.files;
@@ -227,17 +134,24 @@ pub(super) fn request(mut flags: RenderFlags, matches: &ArgMatches) -> Result<Re
         files.resume.clone_from(&files.checkpoint);
     }
     match (flags.batch, &flags.files.save_scene) {
-        (false, None) => {
-            let options = window(flags, picture.as_deref(), matches)?;
-            Ok(Request::Window(Box::new(WindowOptions { mine, ..options })))
-        }
+        _ if flags.list => Ok(Request::List),
+        (true, _) => Ok(Request::Batch(Box::new(batch(flags, command)?))),
         (false, Some(path)) => {
             check_paths(&flags, &[])?;
             let saved = flags.files.resume.as_deref().or(picture.as_deref());
             let (chosen, _) = sources::picture(&flags.picture, &flags.samples, saved)?;
             Ok(Request::SaveScene(Box::new(chosen.recipe), path.clone()))
         }
-        (true, _) => Ok(Request::Batch(Box::new(batch(flags)?))),
+        #[cfg(feature = "window")]
+        (false, None) => Ok(Request::Window(Box::new(window::options(flags, picture, matches)?))),
+        #[cfg(not(feature = "window"))]
+        (false, None) => {
+            let _ = matches;
+            bail!(
+                "this build of Weekender has no window; add --batch to render to a file, for example: weekender --batch \
+                 --stage glass-schlick --out glass.png; or build it with its window: cargo build --release"
+            )
+        }
     }
 }
 
@@ -246,69 +160,14 @@ fn is_scene_file(path: &Path) -> bool {
     path == Path::new(STANDARD) || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"))
 }
 
-/// Whether a file is a picture of another program.
-fn is_others(path: &Path) -> bool {
-    is_named_picture(path) && path.exists() && read_description(path).is_err()
-}
-
-/// `opened` is a picture without a film.
-fn window(flags: RenderFlags, opened: Option<&Path>, matches: &ArgMatches) -> Result<WindowOptions> {
-    let RenderFlags { picture, samples, stop, files, .. } = &flags;
-    let saved = files.resume.as_deref().or(opened);
-    ensure!(
-        samples.sample_range.is_none(),
-        "--sample-range needs --batch: the window renders all samples of its picture"
-    );
-    let file = sources::scene_file(picture.scene.as_deref());
-    let chosen = sources::find(picture, saved)?;
-    let unchanged = chosen.recipe.clone();
-    let (ChosenRecipe { recipe, stage }, job) = sources::changed(chosen, picture, samples)?;
-    if let Some(film) = &files.resume {
-        saved::open(film)?.check_same(&job)?;
-    }
-    let has_end = samples.samples.is_some() || stop.time_limit.is_some() || stop.noise_target.is_some();
-    Ok(WindowOptions {
-        stop: has_end.then(|| plan(&flags, &recipe).stop),
-        recipe,
-        unchanged,
-        stage,
-        file: file.map(PathBuf::from),
-        is_size_given: picture.size.is_some(),
-        is_picture_given: picture.is_given() || saved.is_some() || samples.estimate_error.is_some(),
-        is_device_given: backend::FLAGS.into_iter().any(|flag| is_given(matches, flag)),
-        mine: None,
-        is_saved: saved.is_some() && !picture.has_source(),
-        resume: files.resume.clone(),
-        is_fresh: flags.fresh,
-        autosave_every: flags.autosave_every,
-        state_directory: None,
-        draw_with: flags.draw_with,
-        frame_log: flags.frame_log,
-        backend: flags.backend,
-    })
-}
-
-fn batch(flags: RenderFlags) -> Result<BatchOptions> {
+fn batch(flags: RenderFlags, command: String) -> Result<BatchOptions> {
     let RenderFlags { picture, samples, files, .. } = &flags;
     let (ChosenRecipe { recipe, stage }, job) = sources::picture(picture, samples, files.resume.as_deref())?;
-    let name = stage.map_or(recipe.name.as_str(), |stage| stage.id);
-    let mut out = files.out.clone();
     let is_part = samples.sample_range.is_some() && files.checkpoint.is_some();
-    if out.is_empty() && !is_part {
-        out.push(format!("{}.png", plain_name(name)).into());
-    }
-    check_paths(&flags, &out)?;
-    let with_format = |out: PathBuf| match (files.format, OutputFormat::from_path(&out)) {
-        (Some(format), Ok(named)) if format != named => bail!(
-            "--format {} contradicts the name {}; leave one of them out",
-            &format.ending()[1..],
-            out.shown()
-        ),
-        (Some(format), _) => Ok((out, format)),
-        (None, named) => Ok((out, named?)),
-    };
-    let out = out.into_iter().map(with_format).collect::<Result<Vec<_>>>()?;
-    let to_standard = out.iter().map(|(out, _)| out).chain(&files.json);
+    let name = stage.map_or(recipe.name.as_str(), |stage| stage.id);
+    let outputs = outputs(files, (!is_part).then_some(name))?;
+    check_paths(&flags, &outputs)?;
+    let to_standard = outputs.iter().map(|output| &output.path).chain(&files.json);
     ensure!(
         to_standard.filter(|path| *path == Path::new(STANDARD)).count() <= 1,
         "two of --out and --json would both write to standard output; write one of them to a file"
@@ -325,19 +184,42 @@ fn batch(flags: RenderFlags) -> Result<BatchOptions> {
         recipe,
         job,
         stage,
-        out,
-        checkpoint: flags.files.checkpoint,
+        outputs,
         every: flags.files.every,
         resume: flags.files.resume,
         save_scene: flags.files.save_scene,
         backend: flags.backend,
         progress: flags.progress,
         json: flags.files.json,
+        command,
     })
 }
 
+/// The files to write, films first. The default is a PNG file of this name.
+fn outputs(files: &FileFlags, default: Option<&str>) -> Result<Vec<Output>> {
+    let default = default.map(|name| PathBuf::from(format!("{}.png", plain_name(name))));
+    let out = if files.out.is_empty() { default.as_slice() } else { &files.out };
+    let output = |path: &PathBuf| {
+        let format = match (files.format, OutputFormat::from_path(path)) {
+            (Some(format), Ok(named)) if format != named => bail!(
+                "--format {} contradicts the name {}; leave one of them out",
+                &format.ending()[1..],
+                path.shown()
+            ),
+            (Some(format), _) => format,
+            (None, named) => named?,
+        };
+        Ok(Output { path: path.clone(), format, is_checkpoint: false })
+    };
+    let mut outputs = out.iter().map(output).collect::<Result<Vec<_>>>()?;
+    outputs.sort_by_key(|output| output.format != OutputFormat::Exr);
+    let checkpoint = files.checkpoint.clone();
+    let checkpoint = checkpoint.map(|path| Output { path, format: OutputFormat::Exr, is_checkpoint: true });
+    Ok(checkpoint.into_iter().chain(outputs).collect())
+}
+
 /// Refuses outputs that would replace each other or an input.
-fn check_paths(flags: &RenderFlags, out: &[PathBuf]) -> Result<()> {
+fn check_paths(flags: &RenderFlags, outputs: &[Output]) -> Result<()> {
     let files = &flags.files;
     let scene = sources::inputs(flags.picture.scene.as_deref());
     let others = [files.save_scene.as_deref(), files.json.as_deref()].into_iter().flatten();
@@ -345,11 +227,11 @@ fn check_paths(flags: &RenderFlags, out: &[PathBuf]) -> Result<()> {
     super::check_paths(files.resume.as_deref(), others.clone())?;
     super::check_paths(
         scene.iter().map(PathBuf::as_path),
-        files.checkpoint.iter().chain(out).map(PathBuf::as_path).chain(others),
+        outputs.iter().map(|output| output.path.as_path()).chain(others),
     )
 }
 
-fn plan(flags: &RenderFlags, recipe: &Recipe) -> Plan {
+pub(super) fn plan(flags: &RenderFlags, recipe: &Recipe) -> Plan {
     let StopFlags { time_limit: seconds, noise_target: noise } = flags.stop;
     let (first_sample, samples) = match (&flags.samples.sample_range, flags.samples.samples) {
         (Some(range), _) => (range.start, Some(range.end)),
@@ -363,11 +245,10 @@ fn plan(flags: &RenderFlags, recipe: &Recipe) -> Plan {
 
 #[cfg(test)]
 mod tests {
-    use crate::cli::{Request, parse};
-    use crate::job::output::OutputFormat;
-    use std::time::Duration;
+    use super::*;
+    use crate::cli::parse;
 
-    fn render(line: &str) -> super::BatchOptions {
+    fn render(line: &str) -> BatchOptions {
         match parse(format!("weekender --batch {line}").split(' ').map(Into::into)).unwrap() {
             Request::Batch(options) => *options,
             other => panic!("{other:?}"),
@@ -392,10 +273,10 @@ mod tests {
     #[test]
     fn files_and_intervals_have_defaults() {
         let options = render("--stage metal --checkpoint no-such.exr");
-        assert_eq!(
-            (&options.out, options.every),
-            (&vec![("metal.png".into(), OutputFormat::Png)], Duration::from_secs(60))
-        );
+        let [film, picture] = ["no-such.exr", "metal.png"].map(PathBuf::from);
+        let film = Output { path: film, format: OutputFormat::Exr, is_checkpoint: true };
+        let picture = Output { path: picture, format: OutputFormat::Png, is_checkpoint: false };
+        assert_eq!((options.outputs, options.every), (vec![film, picture], Duration::from_secs(60)));
         let options = render("--scene field:9 --checkpoint no-such.exr --every 5m");
         assert_eq!(options.every, Duration::from_secs(300));
     }

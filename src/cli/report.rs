@@ -1,10 +1,11 @@
 //! The flags of `weekender report`.
 
 use super::sources;
-use super::values::{ProgressChoice, backend_named, number, parse_seconds, parse_size, whole};
+use super::values::{backend_named, number, parse_seconds, parse_size, whole};
 use crate::backends::BackendChoice;
 use crate::job::recipe::Recipe;
 use crate::job::render::{SAMPLE_LIMIT, SamplerKind};
+use crate::system::terminal::ProgressChoice;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use std::path::PathBuf;
@@ -60,6 +61,9 @@ pub struct ReportOptions {
     /// Show progress on standard error; auto: if it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,
+    /// The command line, as the report records it.
+    #[arg(skip)]
+    pub command: String,
 }
 
 /// Name of the C program among the backends of a report.
@@ -151,12 +155,12 @@ impl ReportOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{Command, Request, parse};
+    use crate::cli::{Request, parse};
 
     fn parsed(words: &str) -> Result<ReportOptions, String> {
         let line = format!("weekender report --out r {words}");
         match parse(line.split(' ').map(Into::into)) {
-            Ok(Request::Command(Command::Report(options))) => Ok(*options),
+            Ok(Request::Report(options)) => Ok(*options),
             Ok(other) => panic!("{other:?}"),
             Err(failure) => Err(failure.to_string()),
         }

@@ -5,11 +5,12 @@ use crate::job::recipe::{Recipe, file};
 use crate::job::render::{DEPTH_LIMIT, RenderJob, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::job::saved::open;
 use crate::scene::VFOV_LIMITS_DEGREES;
+use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
 use crate::system::files::STANDARD;
 use anyhow::Result;
-use clap::builder::BoolishValueParser;
-use clap::{Args, ValueHint};
+use clap::builder::{BoolishValueParser, PossibleValuesParser, TypedValueParser};
+use clap::{Arg, Args, Command, Error, ValueHint};
 use glam::DVec3;
 use std::ffi::{OsStr, OsString};
 use std::ops::Range;
@@ -18,16 +19,53 @@ use std::path::{Path, PathBuf};
 /// The default scene.
 const DEFAULT_SCENE: &str = "three-spheres";
 
+/// A parser of names. For an unknown one, clap suggests a similar one.
+#[derive(Clone)]
+pub(super) struct Names {
+    known: PossibleValuesParser,
+    /// Whether a value is read as something other than a name.
+    is_other: fn(&OsStr) -> bool,
+}
+
+impl Names {
+    pub fn of_scenes() -> Self {
+        let known = PossibleValuesParser::new(BuiltinScene::ALL.iter().map(|scene| scene.name));
+        Names { known, is_other: |name| is_field(name) || scene_file(Some(name)).is_some() }
+    }
+
+    /// Other values are the sections of stages.
+    pub fn of_stages() -> Self {
+        let known = PossibleValuesParser::new(Stage::ALL.iter().map(|stage| stage.id));
+        Names { known, is_other: |id| id.to_string_lossy().starts_with(|c: char| c.is_ascii_digit()) }
+    }
+}
+
+fn is_field(name: &OsStr) -> bool {
+    name.to_string_lossy().starts_with("field:")
+}
+
+impl TypedValueParser for Names {
+    type Value = OsString;
+
+    fn parse_ref(&self, command: &Command, flag: Option<&Arg>, value: &OsStr) -> Result<OsString, Error> {
+        if (self.is_other)(value) {
+            return Ok(value.to_owned());
+        }
+        self.known.parse_ref(command, flag, value).map(OsString::from)
+    }
+}
+
 /// Flags that choose and change the picture.
 #[derive(Debug, Default, PartialEq, Args)]
 #[command(next_help_heading = "Picture")]
 pub(super) struct PictureFlags {
     /// A built-in scene, field:N for a field of N spheres, or a scene file [default: three-spheres]
-    #[arg(long, value_name = "NAME|FILE.toml", value_hint = ValueHint::FilePath, conflicts_with = "stage")]
+    #[arg(long, value_name = "NAME|FILE.toml", value_hint = ValueHint::FilePath, value_parser = Names::of_scenes(),
+          conflicts_with = "stage")]
     pub scene: Option<OsString>,
     /// A stage of the book, by name or section, such as glass-schlick or 11.4; --list shows them
-    #[arg(long, value_name = "STAGE")]
-    pub stage: Option<String>,
+    #[arg(long, value_name = "STAGE", value_parser = Names::of_stages())]
+    pub stage: Option<OsString>,
     /// Width and height in pixels, each 1 to 16384 [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<(u32, u32)>,
@@ -150,7 +188,7 @@ pub(super) fn changed(
 pub(super) fn find(flags: &PictureFlags, saved: Option<&Path>) -> Result<ChosenRecipe> {
     match (&flags.stage, &flags.scene, saved) {
         (Some(id), _, _) => {
-            let stage = Stage::find(id)?;
+            let stage = Stage::find(&id.to_string_lossy())?;
             Ok(ChosenRecipe { recipe: stage.recipe(), stage: Some(stage) })
         }
         (None, Some(name), _) => Ok(ChosenRecipe { recipe: scene(name)?, stage: None }),

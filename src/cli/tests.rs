@@ -33,7 +33,7 @@ fn commands_call_the_program_from_any_directory() {
         ("./weekender", whole.as_str()),
         ("target/release/weekender", whole.as_str()),
     ] {
-        assert_eq!(called(Some(name.into())), expected);
+        assert_eq!(called(Some(&name.into())), expected);
     }
     assert_eq!(called(None), "weekender");
 }
@@ -56,10 +56,10 @@ fn the_recorded_command_has_file_names_instead_of_paths() {
         "src/x.exr",
     ];
     assert_eq!(
-        recorded(words.iter().map(OsString::from)),
+        recorded(&words.map(OsString::from)),
         format!(
             "weekender --batch --scene {} --out=a.png --json - --adapter a/b --log=run.log x.exr",
-            Shell::HERE.quoted("my scene.toml")
+            shell::quoted("my scene.toml")
         )
     );
 }
@@ -92,7 +92,7 @@ fn backend_flags_choose_the_windows_backend() {
 #[test]
 fn diff_takes_sides_and_place_from_flags() {
     let compared = |flags: &str| match request(&format!("diff {flags}")) {
-        Ok(Request::Command(Command::Diff(options))) => *options,
+        Ok(Request::Diff(options)) => *options,
         other => panic!("{other:?}"),
     };
     let gpu = BackendChoice::Gpu(GpuOptions::of_adapter(Some("some")));
@@ -170,7 +170,7 @@ fn a_file_alone_is_opened_in_the_window() {
 fn names_that_are_not_utf_8_are_recorded_and_read() {
     use std::os::unix::ffi::OsStrExt;
     let name = |bytes: &'static [u8]| OsStr::from_bytes(bytes).to_owned();
-    let line = recorded(["weekender".into(), "--scene".into(), name(b"/x/K\xf6ln.toml")].into_iter());
+    let line = recorded(&["weekender".into(), "--scene".into(), name(b"/x/K\xf6ln.toml")]);
     assert_eq!(line, "weekender --scene $'K\\xf6ln.toml'");
     let words = ["weekender".into(), "--scene".into(), name(b"no-such-K\xf6ln.toml")];
     let error = parse(words).unwrap_err().to_string();

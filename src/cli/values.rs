@@ -4,7 +4,6 @@ use crate::backends::BackendChoice;
 use crate::film::ROUNDING_LIMIT;
 use crate::job::render::SIZE_LIMIT;
 use crate::render_cpu::{CpuError, Isa};
-use crate::scene::animation::{FRAME_LIMIT, FRAMES_PER_TURN, Turn};
 use anyhow::{Context, Result};
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use glam::DVec3;
@@ -13,29 +12,6 @@ use std::ops::{Range, RangeBounds, RangeInclusive};
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
-
-/// How the window is drawn; independent of the tracer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, clap::ValueEnum)]
-pub enum DrawWith {
-    /// Whatever is faster on this machine
-    #[default]
-    Auto,
-    /// Vulkan, Metal or DX12
-    Wgpu,
-    /// OpenGL
-    Gl,
-}
-
-/// Whether progress is shown on standard error.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum ProgressChoice {
-    /// If standard error is a terminal
-    Auto,
-    /// Always; as lines if it is not a terminal
-    On,
-    /// Never
-    Off,
-}
 
 /// A value or `auto`, which is `None`. Under the name `Option`, clap would take it for a flag without a default.
 pub(super) type Auto<T> = Option<T>;
@@ -181,21 +157,6 @@ pub(super) fn parse_pixel(text: &str) -> Result<[u32; 2], String> {
     text.split_once(',')
         .and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]))
         .ok_or_else(|| "must be a column and a row separated by a comma, such as 120,45".to_owned())
-}
-
-pub(super) fn parse_turn(text: &str) -> Result<Turn, String> {
-    let degrees = || {
-        let degrees: f64 = text.strip_suffix("deg")?.trim_end().parse().ok()?;
-        (degrees != 0.0 && degrees.abs() <= 180.0).then_some(Turn::DegreesPerFrame(degrees))
-    };
-    let frames =
-        || text.parse().ok().filter(|frames| (2..=FRAME_LIMIT).contains(frames)).map(Turn::FramesPerTurn);
-    frames().or_else(degrees).ok_or_else(|| {
-        format!(
-            "must be 2 to {FRAME_LIMIT} frames per turn, such as {FRAMES_PER_TURN}, or up to 180 degrees per frame, \
-             such as 3deg or -3deg"
-        )
-    })
 }
 
 #[cfg(test)]

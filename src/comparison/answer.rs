@@ -1,7 +1,7 @@
 //! The output of the programs on pictures: text for people, JSON for programs, and an exit code.
 
-use crate::cli::terminal::{print_beside, write_figures};
 use crate::system::failure::{BAD_INPUT, FAILED};
+use crate::system::terminal::{print_beside, write_figures};
 use anyhow::Result;
 use serde::Serialize;
 use std::path::Path;

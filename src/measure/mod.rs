@@ -13,7 +13,7 @@ mod table;
 pub use candidate::{Candidate, Traced};
 pub use table::grouped;
 
-use crate::cli::terminal::write_figures;
+use crate::system::terminal::write_figures;
 use anyhow::Result;
 use machine::Machine;
 use serde::Serialize;

@@ -1,7 +1,6 @@
 //! Progress of a measurement, on standard error.
 
-use crate::cli::ProgressChoice;
-use crate::cli::terminal::Display;
+use crate::system::terminal::{Display, ProgressChoice};
 use std::time::Duration;
 
 const BAR_STEPS: f64 = 1000.0;

@@ -6,10 +6,10 @@ use super::{EndReason, Factory, Phase, Plan, RenderRequest, Status, View};
 use crate::backends::BackendChoice;
 use crate::film::Film;
 use crate::job::render::RenderError;
-use crate::system::clock::Instant;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use std::sync::{Arc, Mutex};
+use std::time::Instant;
 
 /// Requests from [`super::Progressive`] to the render thread.
 pub(super) enum RenderCommand {

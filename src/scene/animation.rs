@@ -11,75 +11,48 @@ use super::camera::unit;
 use crate::scene::Camera;
 use glam::DVec3;
 use std::f64::consts::TAU;
-use std::path::{Path, PathBuf};
 
 /// Exclusive limit on frame numbers, and so on their count: an hour at 27 frames a second.
 pub const FRAME_LIMIT: u32 = 100_000;
 
+/// Default frames per turn: four seconds at 30 frames a second.
+pub const FRAMES_PER_TURN: u32 = 120;
+
 #[derive(Clone, Debug, PartialEq)]
 pub enum CameraPath {
-    /// Circles about `vup` around `look_at`.
+    /// Circles about `vup` around `look_at`; counterclockwise, seen from above.
     Turntable {
         /// The camera of frame 0.
         start: Camera,
-        turn: Turn,
+        /// Frames per turn.
+        frames: u32,
     },
-    /// Moves smoothly between keyframes, and rests before the first and after the last.
-    Keyframes {
-        /// The camera if there are no keyframes.
-        still: Camera,
-        /// In ascending order of frames.
-        keyframes: Vec<Keyframe>,
-    },
+    /// Moves smoothly between keyframes in ascending order of frames, and rests before the first and after the last.
+    Keyframes(Vec<Keyframe>),
 }
 
 impl CameraPath {
     /// The camera of a frame, not validated: between valid keyframes, it may for instance look along its `vup`.
     pub fn camera(&self, frame: u32) -> Camera {
         match self {
-            CameraPath::Turntable { start, turn } => turn.turned(start, frame),
-            CameraPath::Keyframes { still, keyframes } => between(keyframes, frame).unwrap_or(*still),
+            CameraPath::Turntable { start, frames } => turned(start, frame % (*frames).max(1), *frames),
+            CameraPath::Keyframes(keyframes) => between(keyframes, frame).unwrap_or_default(),
         }
     }
 }
 
-/// Default frames per turn: four seconds at 30 frames a second.
-pub const FRAMES_PER_TURN: u32 = 120;
-
-/// The speed of a turntable. Seen from above, the camera circles counterclockwise.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Turn {
-    /// Frames per turn, at least 1.
-    FramesPerTurn(u32),
-    /// Degrees between frames; negative for clockwise.
-    DegreesPerFrame(f64),
-}
-
-impl Turn {
-    /// The angle of a frame in turns, strictly between -1 and 1. Whole turns are exactly 0.
-    fn angle(self, frame: u32) -> f64 {
-        match self {
-            Turn::FramesPerTurn(frames) => f64::from(frame % frames.max(1)) / f64::from(frames.max(1)),
-            Turn::DegreesPerFrame(degrees) => (f64::from(frame) * degrees % 360.0) / 360.0,
-        }
+/// The camera after `frame` of the `frames` of a turn.
+fn turned(start: &Camera, frame: u32, frames: u32) -> Camera {
+    if frame == 0 {
+        return *start;
     }
-
-    /// The camera of a frame; `start` is that of frame 0.
-    fn turned(self, start: &Camera, frame: u32) -> Camera {
-        let angle = self.angle(frame);
-        if angle == 0.0 {
-            return *start;
-        }
-        // From libm, because the system's sines differ between machines.
-        let (sine, cosine) = libm::sincos(angle * TAU);
-        let axis = unit(start.vup);
-        let arm = start.look_from - start.look_at;
-        let along = axis * axis.dot(arm);
-        Camera {
-            look_from: start.look_at + along + (arm - along) * cosine + axis.cross(arm) * sine,
-            ..*start
-        }
-    }
+    // From libm, because the system's sines differ between machines.
+    let (sine, cosine) = libm::sincos(f64::from(frame) / f64::from(frames) * TAU);
+    let axis = unit(start.vup);
+    let arm = start.look_from - start.look_at;
+    let along = axis * axis.dot(arm);
+    let look_from = start.look_at + along + (arm - along) * cosine + axis.cross(arm) * sine;
+    Camera { look_from, ..*start }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,7 +62,7 @@ pub struct Keyframe {
     pub camera: Camera,
 }
 
-/// `keyframes` must be in ascending order of frames; `None` if there are none.
+/// `None` without keyframes.
 fn between(keyframes: &[Keyframe], frame: u32) -> Option<Camera> {
     // Index of the first keyframe after this frame.
     let next = keyframes.partition_point(|keyframe| keyframe.frame <= frame);
@@ -204,39 +177,5 @@ impl Channel<'_> {
         let [leaving, arriving] = [index, index + 1].map(|index| self.slope(index));
         let bends = (1.0 - t) * (1.0 - t) * t * leaving - (1.0 - t) * t * t * arriving;
         start + rise * (3.0 - 2.0 * t) * t * t + length * bends
-    }
-}
-
-/// Where an animation's frames are: a directory, and a name with a place for the number.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FrameNames {
-    pub directory: PathBuf,
-    before: String,
-    /// Minimum number of digits.
-    digits: usize,
-    after: String,
-}
-
-impl FrameNames {
-    /// Names from a pattern such as `shots/turn-####.png`, whose `#` signs stand for the number and its minimum digits.
-    /// `None` unless the file name has exactly one run of them.
-    pub fn of_pattern(pattern: &Path) -> Option<FrameNames> {
-        let name = pattern.file_name()?.to_str()?;
-        let (before, rest) = name.split_once('#')?;
-        let after = rest.trim_start_matches('#');
-        if after.contains('#') {
-            return None;
-        }
-        Some(FrameNames {
-            directory: pattern.parent().map(Path::to_owned).unwrap_or_default(),
-            before: before.to_owned(),
-            digits: name.len() - before.len() - after.len(),
-            after: after.to_owned(),
-        })
-    }
-
-    pub fn path(&self, frame: u32) -> PathBuf {
-        let FrameNames { directory, before, digits, after } = self;
-        directory.join(format!("{before}{frame:0digits$}{after}"))
     }
 }

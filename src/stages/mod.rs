@@ -9,7 +9,6 @@ mod table;
 pub use rules::{BOOK_T_MIN, DielectricLaws, Diffuse, Rules, Shading, SurfaceRule, Transfer};
 
 use crate::scene::{Camera, Scene};
-use crate::system::suggest::{or_nearest, similar_names};
 use anyhow::{Result, bail};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -87,17 +86,14 @@ impl Stage {
     /// All stages in the book's order. The last has every rule on.
     pub const ALL: &'static [Stage] = table::STAGES;
 
-    /// Finds a stage by id, or by the number of its section, if that has only one stage. The error suggests ids.
+    /// Finds a stage by id, or by the number of its section, if that has only one stage.
     pub fn find(id: &str) -> Result<&'static Stage> {
         let with_id = Self::ALL.iter().find(|stage| stage.id == id);
         let of_section: Vec<&Stage> = Self::walk().filter(|stage| stage.section == id).collect();
         match (with_id, &of_section[..]) {
             (Some(stage), _) => Ok(stage),
             (None, [stage]) => Ok(stage),
-            (None, []) => {
-                let near = similar_names(id, Self::ALL.iter().map(|stage| stage.id));
-                bail!("there is no stage {id:?}; {}", or_nearest(&near))
-            }
+            (None, []) => bail!("there is no stage {id:?}; --list shows all"),
             (None, several) => {
                 let ids: Vec<&str> = several.iter().map(|stage| stage.id).collect();
                 bail!("section {id} has several stages; choose one of {}", ids.join(", "))

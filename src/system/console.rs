@@ -10,13 +10,7 @@ use std::io::{self, Write};
 use std::sync::{Mutex, PoisonError};
 
 /// Standard error while [`foreign`](super::foreign) redirects it.
-static STANDARD_ERROR: Mutex<Option<File>> = Mutex::new(None);
-
-/// Sends the program's messages to `file` instead of standard error, or back.
-#[cfg(target_os = "linux")]
-pub(super) fn set_standard_error(file: Option<File>) {
-    *STANDARD_ERROR.lock().unwrap_or_else(PoisonError::into_inner) = file;
-}
+pub(super) static STANDARD_ERROR: Mutex<Option<File>> = Mutex::new(None);
 
 /// Prints lines to standard error, without control characters. Failures are ignored.
 pub fn note(text: &str) {

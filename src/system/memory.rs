@@ -9,7 +9,7 @@ use std::fs;
 
 /// Something needs more memory than is available.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
-#[error("{what} needs {} of memory, but {}{remedy}", words(*needed_bytes), room.text())]
+#[error("{what} needs {} of memory, but {}{remedy}", words(*needed_bytes), room.limit.replace("{}", &words(room.bytes)))]
 pub struct MemoryError {
     /// The purpose of the memory.
     pub what: String,
@@ -23,40 +23,17 @@ pub struct MemoryError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Room {
     pub bytes: u64,
-    pub limit: Limit,
+    /// What a message says about it, with `{}` for the bytes.
+    limit: &'static str,
 }
 
-/// A limit on the program's memory.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Limit {
-    /// The memory of this machine.
-    Machine,
-    /// That of a control group: of a container, a service or a batch job.
-    Group,
-    /// That of `ulimit -v`, on address space.
-    AddressSpace,
-    /// That of `ulimit -d`, on data.
-    Data,
-    /// A limit that the system does not report.
-    Unknown,
-}
-
-impl Room {
-    fn text(self) -> String {
-        let bytes = words(self.bytes);
-        match self.limit {
-            Limit::Machine => format!("only {bytes} is free; "),
-            Limit::Group => {
-                format!(
-                    "its control group (container, service or job) has only {bytes} left; raise the group's limit, or "
-                )
-            }
-            Limit::AddressSpace => format!("ulimit -v leaves only {bytes}; raise that limit, or "),
-            Limit::Data => format!("ulimit -d leaves only {bytes}; raise that limit, or "),
-            Limit::Unknown => "the system refuses it; ".to_owned(),
-        }
-    }
-}
+const MACHINE: &str = "only {} is free; ";
+const GROUP: &str =
+    "its control group (container, service or job) has only {} left; raise the group's limit, or ";
+const ADDRESS_SPACE: &str = "ulimit -v leaves only {}; raise that limit, or ";
+const DATA: &str = "ulimit -d leaves only {}; raise that limit, or ";
+/// A limit that the system does not report.
+const UNKNOWN: &str = "the system refuses it; ";
 
 /// A number of bytes with a unit.
 pub fn words(bytes: u64) -> String {
@@ -108,7 +85,7 @@ pub fn zeroed<T: bytemuck::Zeroable>(
         what: what(),
         needed_bytes: bytes,
         // If the known limits leave room, an unknown one was reached.
-        room: room().filter(|room| room.bytes < bytes).unwrap_or(Room { bytes: 0, limit: Limit::Unknown }),
+        room: room().filter(|room| room.bytes < bytes).unwrap_or(Room { bytes: 0, limit: UNKNOWN }),
         remedy,
     })
 }
@@ -119,11 +96,11 @@ pub fn room() -> Option<Room> {
     let of_linux = fs::read_to_string("/proc/meminfo").ok().and_then(|text| in_bytes(&text, "MemAvailable:"));
     let [address_space, data] = left_by_limits();
     let rooms = [
-        (Limit::Machine, of_linux),
-        (Limit::Machine, of_other_systems()),
-        (Limit::Group, free_of_groups()),
-        (Limit::AddressSpace, address_space),
-        (Limit::Data, data),
+        (MACHINE, of_linux),
+        (MACHINE, of_other_systems()),
+        (GROUP, free_of_groups()),
+        (ADDRESS_SPACE, address_space),
+        (DATA, data),
     ];
     let known = rooms.into_iter().filter_map(|(limit, bytes)| Some(Room { bytes: bytes?, limit }));
     known.min_by_key(|room| room.bytes)
@@ -197,13 +174,12 @@ mod tests {
     #[test]
     fn refusals_have_numbers_and_a_remedy() {
         let of = |limit| move |bytes| Room { bytes, limit };
-        let check =
-            |bytes, free| check_against(|| "a film".to_owned(), bytes, of(Limit::Machine)(free), "do less");
+        let check = |bytes, free| check_against(|| "a film".to_owned(), bytes, of(MACHINE)(free), "do less");
         let message = check(14_000_000_000, 8_000_000_000).unwrap_err().to_string();
         let parts = ["a film", "14.07 GB", "8.00 GB", "do less"];
         assert!(parts.iter().all(|part| message.contains(part)), "{message}");
         assert!(check(u64::MAX, u64::MAX - 1).is_err());
-        for (limit, name) in [(Limit::AddressSpace, "ulimit -v"), (Limit::Group, "control group")] {
+        for (limit, name) in [(ADDRESS_SPACE, "ulimit -v"), (GROUP, "control group")] {
             let refused = check_against(|| "a film".to_owned(), 9, of(limit)(5_000_000), "do less");
             let message = refused.unwrap_err().to_string();
             assert!(message.contains(name) && message.contains("5.00 MB"), "{message}");

@@ -1,6 +1,5 @@
 //! The foundation of every room: files written whole or not at all, the log, signals, the memory check, the console.
 
-pub mod clock;
 pub mod console;
 pub mod failure;
 pub mod files;
@@ -9,5 +8,5 @@ pub mod interrupt;
 pub mod journal;
 pub mod memory;
 pub mod shell;
-pub mod suggest;
+pub mod terminal;
 pub mod threads;

@@ -2,7 +2,7 @@
 
 use super::Document;
 use crate::scene::Camera;
-use crate::scene::animation::{CameraPath, FRAME_LIMIT, FRAMES_PER_TURN, Keyframe, Turn};
+use crate::scene::animation::{CameraPath, FRAME_LIMIT, FRAMES_PER_TURN, Keyframe};
 
 /// Frames a second when it is played.
 pub const FRAMES_PER_SECOND: f64 = 30.0;
@@ -40,8 +40,8 @@ impl Document {
     /// The path through the bookmarks; with fewer than two of them, once around what the camera looks at.
     pub fn path(&self, frames: u32) -> CameraPath {
         match self.keyframes.len() {
-            0 | 1 => CameraPath::Turntable { start: self.camera, turn: Turn::FramesPerTurn(frames) },
-            _ => CameraPath::Keyframes { still: self.camera, keyframes: self.keyframes.clone() },
+            0 | 1 => CameraPath::Turntable { start: self.camera, frames },
+            _ => CameraPath::Keyframes(self.keyframes.clone()),
         }
     }
 

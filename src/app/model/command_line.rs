@@ -2,7 +2,7 @@
 
 use super::{Document, Source};
 use crate::job::recipe::plain_name;
-use crate::system::shell::Shell;
+use crate::system::shell;
 use std::fmt::Write;
 
 impl Document {
@@ -14,7 +14,7 @@ impl Document {
         let mut line = String::from("weekender --batch");
         // Writing to a string cannot fail.
         let mut add = |flag: &str, value: &dyn std::fmt::Display| {
-            let _ = write!(line, " {flag}={}", Shell::HERE.quoted(&value.to_string()));
+            let _ = write!(line, " {flag}={}", shell::quoted(&value.to_string()));
         };
         let mut repeats = false;
         match &self.origin.source {

@@ -17,13 +17,13 @@ use crate::app::model::{
 use crate::app::toolkit::Finder;
 use crate::app::toolkit::widgets::{focus, samples_words};
 use crate::app::viewport::visit::Visit;
-use crate::cli::{FramesOptions, ProgressChoice};
+use crate::batch::{FrameNames, FramesOptions};
 use crate::film::Film;
 use crate::job::output::OutputFormat;
 use crate::job::recipe::Recipe;
 use crate::job::recipe::file::sphere_to_toml;
-use crate::scene::animation::FrameNames;
 use crate::stages::{BOOK_URL, Stage};
+use crate::system::terminal::ProgressChoice;
 use eframe::egui::{self, Context, ViewportCommand};
 use std::path::{Path, PathBuf};
 use std::process;

@@ -40,15 +40,6 @@ fn times_have_units() {
 }
 
 #[test]
-fn turns_are_frames_or_degrees() {
-    assert_eq!(parse_turn("100000"), Ok(Turn::FramesPerTurn(100_000)));
-    assert_eq!(parse_turn("-180 deg"), Ok(Turn::DegreesPerFrame(-180.0)));
-    for text in ["1", "100001", "180.5deg", "-180.5deg", "0deg", "nandeg", "x"] {
-        assert!(parse_turn(text).unwrap_err().contains("3deg"), "{text}");
-    }
-}
-
-#[test]
 fn refusals_name_what_is_allowed() {
     for text in ["", "800", "800x", "0x450", "800x16385", "99999999999x1", "-8x4"] {
         assert!(parse_size(text).unwrap_err().contains("16384"), "{text}");

@@ -26,11 +26,11 @@ pub use watch::{POLL_INTERVAL, Watched};
 
 use super::answer::{Verdict, deliver};
 use crate::batch::aligned;
-use crate::cli::terminal::{Display, print_beside};
 use crate::cli::{CheckOptions, check_outputs};
 use crate::numbers::heat::HeatScale;
 use crate::system::console;
 use crate::system::files::{STANDARD, make_directory, replace_file, write_text};
+use crate::system::terminal::{Display, print_beside};
 use anyhow::{Context, Result, ensure};
 use image::{ImageFormat, RgbImage};
 use serde_json::json;

@@ -12,8 +12,7 @@ pub use summary::{CurvePoint, CurveSummary, curves};
 use super::machine::Machine;
 use super::progress::Progress;
 use super::{Candidate, write_json};
-use crate::cli::terminal::print;
-use crate::cli::{ReportOptions, command_line};
+use crate::cli::ReportOptions;
 use crate::denoise;
 use crate::film::{Film, SOFTWARE};
 use crate::job::recipe::Recipe;
@@ -23,6 +22,7 @@ use crate::system::console;
 use crate::system::failure::Failure;
 use crate::system::files::{check_writable, make_directory, write_text};
 use crate::system::interrupt::Interrupt;
+use crate::system::terminal::print;
 use anyhow::Result;
 use data::{Measured, Run};
 use reference::ReferencePicture;
@@ -133,7 +133,7 @@ impl<'a> Report<'a> {
         let (out, targets) = (&self.options.out, self.options.targets());
         let findings = Findings::of(&self.data, &targets);
         write_json(&out.join("report.json"), &self.machine, &findings)?;
-        write_text(&out.join("report.md"), &text::markdown(&findings, &command_line()))?;
+        write_text(&out.join("report.md"), &text::markdown(&findings, &self.options.command))?;
         let figure = figure::figure(&self.data, &findings.curves, targets[0]);
         write_text(&out.join("error-vs-time.svg"), &chart::svg(&figure)?)?;
         print(&format!("wrote report.md, report.json and error-vs-time.svg to {}\n", out.display()))

@@ -4,11 +4,10 @@ use super::{Cancel, Render};
 use crate::backends::{BackendChoice, close};
 use crate::job::render::{RenderError, RenderJob, Renderer};
 use crate::progressive::{Factory, Phase};
-use crate::system::clock::Instant;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// A renderer and the choice it was made from.
 pub type Backend = (BackendChoice, Box<dyn Renderer>);

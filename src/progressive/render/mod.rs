@@ -13,12 +13,11 @@ use crate::backends::BackendChoice;
 use crate::denoise;
 use crate::film::{Film, PixelSum, SampleRanges};
 use crate::job::render::{Control, Outcome, RenderError, RenderJob, Renderer, Stats};
-use crate::system::clock::Instant;
 use backends::Pending;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Estimating the error may take at most one in this many parts of the time.
 const ERROR_ESTIMATE_SHARE: u32 = 20;

@@ -1,7 +1,7 @@
 //! Locks between programs. The system releases them however a program ends.
 
 use super::leftovers::{LOCK, PREFIX};
-use super::paths::{ShownPath, resolved};
+use super::paths::{ShownPath, identity, resolved};
 use super::replace::patiently;
 use same_file::Handle;
 use std::ffi::OsString;
@@ -32,7 +32,7 @@ pub struct FileLock {
 }
 
 impl FileLock {
-    /// Locks `path` until the result is dropped. Devices need no lock; where the system has no locks, runs are not kept
+    /// Locks `path` until the result is dropped. Devices and standard output need no lock; where the system has no locks, runs are not kept
     /// apart.
     ///
     /// # Errors
@@ -42,7 +42,7 @@ impl FileLock {
     }
 
     fn take_within(path: &Path, patience: Duration) -> Result<FileLock, LockedError> {
-        if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
+        if identity(path).is_none() {
             return Ok(FileLock { held: None });
         }
         let lock = || -> io::Result<(File, PathBuf)> {

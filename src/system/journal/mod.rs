@@ -52,6 +52,7 @@ pub fn start(file: Option<&Path>) -> Result<()> {
     let most = filter.filter().max(LevelFilter::Info);
     if log::set_boxed_logger(Box::new(Journal { filter, file, began: Instant::now() })).is_ok() {
         log::set_max_level(most);
+        log::info!("{}", panic::version());
     }
     Ok(())
 }

@@ -5,7 +5,7 @@ use super::kept_text;
 use crate::system::console;
 use crate::system::failure::FAILED;
 use crate::system::files::{state_directory, write_text};
-use crate::system::shell::Shell;
+use crate::system::shell;
 use std::backtrace::{Backtrace, BacktraceStatus};
 use std::env;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
@@ -29,6 +29,10 @@ pub fn expect_panics(is_expected: bool) -> bool {
 /// Message of the latest panic on any thread.
 static LATEST: Mutex<Option<String>> = Mutex::new(None);
 
+pub(super) fn version() -> &'static str {
+    VERSION.get().map_or("version unknown", String::as_str)
+}
+
 /// Runs `program`; if it panics, writes a report and prints its path.
 pub fn watched(version: String, program: impl FnOnce() -> ExitCode) -> ExitCode {
     VERSION.get_or_init(|| version);
@@ -42,8 +46,7 @@ pub fn watched(version: String, program: impl FnOnce() -> ExitCode) -> ExitCode 
 /// Writes a report on the latest panic to a file and prints its path to standard error. Does nothing without a panic.
 pub fn write_report() {
     let Some(message) = LATEST.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
-    let version = VERSION.get().map_or("unknown", String::as_str);
-    let text = report(version, &Shell::HERE.line(env::args_os()), &message, &kept_text());
+    let text = report(version(), &shell::line(env::args_os()), &message, &kept_text());
     let name = format!("weekender-report-{}.txt", std::process::id());
     let state = state_directory().filter(|state| std::fs::create_dir_all(state).is_ok());
     let places = [Some(env::temp_dir()), state, Some(PathBuf::from("."))];

@@ -6,7 +6,7 @@ excerpt:
 system:
 numbers:
 scene:
-stages: system scene
+stages: scene
 film: system stages
 denoise: system film
 job: system scene stages film
@@ -16,11 +16,11 @@ render_cpu: system stages film job kernel prepared
 render_gpu: system stages film job kernel prepared
 backends: system scene stages film job kernel render_cpu render_gpu
 progressive: system numbers scene stages film denoise job backends
-cli: system scene stages film job render_cpu render_gpu backends progressive
-batch: system scene stages film denoise job backends progressive cli
-comparison: system numbers scene stages film job kernel render_cpu render_gpu backends cli
+batch: system scene stages film denoise job backends progressive
+cli: system scene stages film job render_cpu render_gpu backends progressive batch
+comparison: system numbers scene stages film job kernel render_cpu render_gpu backends batch cli
 measure: system numbers scene stages film denoise job kernel render_cpu render_gpu backends cli comparison
-app: system numbers scene stages film denoise job render_cpu render_gpu backends progressive cli batch comparison measure excerpt";
+app: excerpt system numbers scene stages film denoise job render_cpu render_gpu backends progressive batch cli comparison measure";
 
 /// Crates that only some rooms may use.
 pub const CRATES: &[(&str, &[&str])] = &[
@@ -37,7 +37,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("obvhs", &["prepared"]),
     ("libm", &["numbers", "scene"]),
     ("image", &["job", "comparison", "app"]),
-    ("indicatif", &["system", "cli", "measure"]),
+    ("indicatif", &["system", "measure"]),
     ("plotters", &["numbers"]),
     ("clap", &["system", "job", "cli"]),
     ("env_filter", &["system"]),

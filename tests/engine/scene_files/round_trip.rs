@@ -59,7 +59,7 @@ fn a_picture_names_a_large_field_and_restores_it() {
         Recipe::builtin("three-spheres").expect("one").scene
     );
     let unknown = message(&named.replace("three-spheres", "three-sphere"));
-    assert!(unknown.starts_with("x:1:") && unknown.contains("did you mean three-spheres"), "{unknown}");
+    assert!(unknown.starts_with("x:1:") && unknown.contains("there is no scene"), "{unknown}");
     let both = message(&format!("{named}\n[sky]\ntop = [1, 1, 1]\n"));
     assert!(both.contains("cannot be combined with scene"), "{both}");
 }

@@ -13,15 +13,14 @@ fn ranges_and_turns_have_limits() {
             &[range, "100000, such as 0..120"],
         );
     }
-    for turn in ["0", "1", "-5", "100001", "0deg", "181deg", "nandeg", "x"] {
-        refused(&["--batch", &format!("--turntable={turn}"), "--out", "d"], &[turn, "such as 3deg or -3deg"]);
+    for turn in ["0", "1", "-5", "100001", "3deg"] {
+        refused(&["--batch", &format!("--turntable={turn}"), "--out", "d"], &[turn, "2 to 100000"]);
     }
 }
 
 #[test]
 fn a_camera_must_move_and_be_valid() {
     refused(&["--batch", "--frames", "0..3", "--out", "d"], &["--turntable", "[[keyframes]]"]);
-    refused(&["--batch", "--turntable=3deg", "--out", "d"], &["--frames", "A..B"]);
     let scene = ["--batch", "--scene", "scene.toml", "--frames", "0..6", "--out", "d"];
     refused(&[&scene[..], &["--vfov", "20"]].concat(), &["--vfov", "use --turntable"]);
     // On the diagonal, the camera is within the limits of positions; on its way to the axis, it leaves them.

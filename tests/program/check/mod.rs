@@ -131,7 +131,7 @@ fn finding_sets_exit_code_files_and_json() {
     check(0, &[&["d/ours.png"], &stage[..]].concat());
     for (arguments, part) in [
         (&["nothing.ppm"][..], "nothing.ppm"),
-        (&["right.ppm", "--stage", "metall"], "did you mean metal?"),
+        (&["right.ppm", "--stage", "metall"], "'metal'"),
         (&["right.ppm", "--out", "right.ppm"], "right.ppm"),
         (&["right.ppm", "--json", "nowhere/found.json"], "nowhere"),
         (&["d/mine.png", "--out", "d"], "would replace"),

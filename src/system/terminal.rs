@@ -1,11 +1,10 @@
 //! Output of the programs without a window: text for people, JSON for other programs, and progress on standard error (a
 //! bar on a terminal, otherwise a line from time to time, or nothing).
 
-pub use crate::system::console::print;
+pub use super::console::print;
 
-use super::ProgressChoice;
-use crate::system::console;
-use crate::system::files::{STANDARD, write_text};
+use super::console;
+use super::files::{STANDARD, write_text};
 use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
@@ -56,19 +55,24 @@ pub fn write_json(value: &impl Serialize, target: &Path) -> Result<()> {
     Ok(write_text(target, &text)?)
 }
 
-/// How progress is shown.
-pub enum Display {
-    /// A progress bar with its template.
-    Bar(ProgressBar, &'static str),
-    /// Single lines.
-    Lines {
-        /// When the next line may be printed.
-        next: Instant,
-        /// Minimum time between two lines.
-        interval: Duration,
-    },
-    /// Nothing.
+/// Whether progress is shown on standard error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum ProgressChoice {
+    /// If standard error is a terminal
+    Auto,
+    /// Always; as lines if it is not a terminal
+    On,
+    /// Never
     Off,
+}
+
+/// Progress on standard error.
+pub struct Display {
+    /// Hidden unless it is shown on a terminal.
+    bar: ProgressBar,
+    template: &'static str,
+    /// For lines: when the next one may be printed, and the minimum time between two.
+    lines: Option<(Instant, Duration)>,
 }
 
 impl Display {
@@ -81,45 +85,36 @@ impl Display {
         prefix: &str,
         interval: Duration,
     ) -> Self {
-        match (choice, stderr().is_terminal()) {
-            (ProgressChoice::Off, _) | (ProgressChoice::Auto, false) => Display::Off,
-            (ProgressChoice::On, false) => Display::Lines { next: Instant::now(), interval },
-            (_, true) => Display::bar(ProgressDrawTarget::stderr(), steps, template, prefix),
-        }
-    }
-
-    fn bar(target: ProgressDrawTarget, steps: u64, template: &'static str, prefix: &str) -> Self {
+        let is_terminal = stderr().is_terminal();
+        let has_bar = is_terminal && choice != ProgressChoice::Off;
+        let target = if has_bar { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+        let has_lines = !is_terminal && choice == ProgressChoice::On;
         let bar = ProgressBar::with_draw_target(Some(steps), target);
         bar.set_prefix(console::printable(prefix).into_owned());
-        Display::Bar(bar, template)
+        Display { bar, template, lines: has_lines.then(|| (Instant::now(), interval)) }
     }
 
     /// Shows `text` at step `position`. A line is printed only if one is due.
     pub fn update(&mut self, position: u64, text: impl FnOnce() -> String) {
-        match self {
-            Display::Lines { next, .. } if Instant::now() < *next => {}
-            _ => self.announce(position, text),
+        if self.lines.is_none_or(|(next, _)| next <= Instant::now()) {
+            self.announce(position, text);
         }
     }
 
     /// Shows `text` at step `position` even if no line is due. A narrow terminal shows only the text.
     pub fn announce(&mut self, position: u64, text: impl FnOnce() -> String) {
-        match self {
-            Display::Bar(bar, template) => {
-                let is_narrow = terminal_size().is_some_and(|(Width(columns), _)| columns < WIDE);
-                let template = if is_narrow { "{wide_msg}" } else { *template };
-                if let Ok(style) = ProgressStyle::with_template(template) {
-                    bar.set_style(style.progress_chars("=> "));
-                }
-                bar.set_position(position);
-                bar.set_message(console::printable(&text()).into_owned());
-            }
-            Display::Lines { next, interval } => {
-                *next = Instant::now() + *interval;
-                console::note(&text());
-            }
-            Display::Off => {}
+        let text = text();
+        if let Some((next, interval)) = &mut self.lines {
+            *next = Instant::now() + *interval;
+            console::note(&text);
         }
+        let is_narrow = terminal_size().is_some_and(|(Width(columns), _)| columns < WIDE);
+        if let Ok(style) = ProgressStyle::with_template(if is_narrow { "{wide_msg}" } else { self.template })
+        {
+            self.bar.set_style(style.progress_chars("=> "));
+        }
+        self.bar.set_position(position);
+        self.bar.set_message(console::printable(&text).into_owned());
     }
 
     /// Prints a message that must be read, even if progress is off.
@@ -133,17 +128,12 @@ impl Display {
 
     /// Hides the bar while `print` writes to the terminal.
     pub fn above<T>(&self, print: impl FnOnce() -> T) -> T {
-        match self {
-            Display::Bar(bar, ..) => bar.suspend(print),
-            _ => print(),
-        }
+        self.bar.suspend(print)
     }
 
     /// Removes the bar.
     pub fn clear(&self) {
-        if let Display::Bar(bar, ..) = self {
-            bar.finish_and_clear();
-        }
+        self.bar.finish_and_clear();
     }
 }
 
@@ -156,34 +146,30 @@ mod tests {
 
     #[test]
     fn lines_are_rate_limited_unless_announced() {
-        let interval = Duration::from_secs(3600);
-        let mut display = Display::Lines { next: Instant::now(), interval };
+        let mut display = Display::new(ProgressChoice::Off, 4, "", "", Duration::ZERO);
+        display.lines = Some((Instant::now(), Duration::from_secs(3600)));
         let mut printed = Vec::new();
-        let mut show = |display: &mut Display, word: &'static str, must: bool| {
+        let mut show = |word: &'static str, must: bool| {
             let words = || {
                 printed.push(word);
                 word.to_owned()
             };
             if must { display.announce(1, words) } else { display.update(1, words) }
         };
-        show(&mut display, "first", false);
-        show(&mut display, "too soon", false);
-        show(&mut display, "announced", true);
-        show(&mut display, "too soon again", false);
-        show(&mut Display::Off, "nothing", true);
+        show("first", false);
+        show("too soon", false);
+        show("announced", true);
+        show("too soon again", false);
         assert_eq!(printed, ["first", "announced"]);
     }
 
     #[test]
     fn bar_escapes_control_characters() {
-        let mut display =
-            Display::bar(ProgressDrawTarget::hidden(), 4, "{prefix} [{bar:24}] {wide_msg}", "a\u{1b}b");
-        let Display::Bar(bar, ..) = &display else { panic!("no bar") };
-        let bar = bar.clone();
+        let template = "{prefix} [{bar:24}] {wide_msg}";
+        let mut display = Display::new(ProgressChoice::Off, 4, template, "a\u{1b}b", Duration::ZERO);
         display.update(2, || "half\u{1b} done".to_owned());
+        let bar = &display.bar;
         assert_eq!((bar.position(), bar.length()), (2, Some(4)));
         assert_eq!((bar.prefix(), bar.message()), ("a\\u{1b}b".to_owned(), "half\\u{1b} done".to_owned()));
-        display.clear();
-        assert!(bar.is_finished());
     }
 }
