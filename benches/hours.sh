@@ -30,7 +30,7 @@ xdotool windowfocus "$(xdotool search --onlyvisible --pid $window | tail -1)"
 
 keys=(space r g h c j x v k n p t i l Tab f 1 2 3 4 5 6 7 8 9 0 plus minus Home period comma bracketleft bracketright
     Page_Up Page_Down Page_Down Page_Down Insert Delete ctrl+d ctrl+c ctrl+v ctrl+z ctrl+z ctrl+shift+z ctrl+n ctrl+b
-    shift+p shift+c shift+n shift+m shift+r ctrl+1 ctrl+2 ctrl+3 ctrl+4 ctrl+5 F5 F6 F11 F1 Escape Escape Escape Return
+    shift+p shift+c shift+n shift+r ctrl+1 ctrl+2 ctrl+3 ctrl+4 ctrl+5 F5 F6 F11 F1 Escape Escape Escape Return
     Up Down Left Right w a s d q e)
 # Some kept pictures. What has the focus may be the button that keeps more.
 for _ in 1 2 3; do xdotool key m; sleep 2; done

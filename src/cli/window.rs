@@ -59,8 +59,6 @@ pub struct WindowOptions {
     /// The directory for autosaves; `None` disables them.
     pub state_directory: Option<PathBuf>,
     pub draw_with: DrawWith,
-    /// File for the times of the window's frames.
-    pub frame_log: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -74,9 +72,6 @@ pub(super) struct WindowFlags {
     /// Autosave interval of the window, 0.1s to 30d of tracing
     #[arg(long, value_name = "DURATION", value_parser = parse_duration, default_value = "60s", hide = true)]
     autosave_every: Duration,
-    /// Write the times of the window's frames to a file
-    #[arg(long, value_name = "FILE", hide = true)]
-    frame_log: Option<PathBuf>,
 }
 
 /// Whether a file is a picture of another program.
@@ -124,7 +119,6 @@ pub(super) fn options(
         autosave_every: flags.window.autosave_every,
         state_directory: None,
         draw_with: flags.window.draw_with,
-        frame_log: flags.window.frame_log,
         backend: flags.backend,
     })
 }

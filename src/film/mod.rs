@@ -10,7 +10,6 @@ mod checksum;
 mod description;
 mod error_estimate;
 mod fixed_point;
-mod histogram;
 mod locked;
 mod merge;
 mod ranges;
@@ -24,7 +23,6 @@ pub use error_estimate::ErrorEstimate;
 pub use fixed_point::{
     FIXED_POINT_MAX, FIXED_POINT_SCALE, PixelSum, RADIANCE_LIMIT, ROUNDING_LIMIT, fixed_point,
 };
-pub use histogram::Histogram;
 pub use locked::LockedFilm;
 pub use merge::FilmSum;
 pub use ranges::SampleRanges;

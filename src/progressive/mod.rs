@@ -19,7 +19,7 @@ pub use passes::PassSizer;
 pub use plan::{EndReason, NOISE_TARGET_FIRST_SAMPLES, NoiseOf, Plan, Stop};
 pub use shared::Picture;
 pub use status::{Contribution, HistoryPoint, Phase, Status};
-pub use view::{ReferenceMeans, View, luminance, standard_error};
+pub use view::{ReferenceMeans, View};
 
 use crate::backends::{self, BackendChoice};
 use crate::film::Film;

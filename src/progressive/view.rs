@@ -50,7 +50,7 @@ impl ReferenceMeans {
 /// The standard error of a pixel's mean, linear RGB, estimated from the halves, assuming that their variances are
 /// inversely proportional to their numbers of samples. [`Film::error`] measures how far that holds; the two are equal
 /// after even numbers of samples.
-pub fn standard_error(film: &Film, pixel: usize) -> Option<[f64; 3]> {
+fn standard_error(film: &Film, pixel: usize) -> Option<[f64; 3]> {
     let [half_a, half_b] = film.halves() else { return None };
     let (a, b) = (film.half_sample_count(0) as f64, film.half_sample_count(1) as f64);
     if a == 0.0 || b == 0.0 {
@@ -122,7 +122,7 @@ impl View {
 }
 
 /// The luminance of a linear RGB colour, by Rec. 709.
-pub fn luminance([red, green, blue]: [f64; 3]) -> f64 {
+fn luminance([red, green, blue]: [f64; 3]) -> f64 {
     0.2126 * red + 0.7152 * green + 0.0722 * blue
 }
 

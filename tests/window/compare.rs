@@ -1,9 +1,9 @@
 //! One picture, traced by two devices.
 
 use crate::common::gpu::has_adapter;
-use crate::harness::{control, has_samples, open_sized, send, until, window_of_new_user};
+use crate::harness::{has_samples, open_sized, send, until, window_of_new_user};
 use crate::questions::Ask as _;
-use eframe::egui::{Key, OutputCommand};
+use eframe::egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use weekender::app::{Command, Device, Partner, Window};
@@ -64,24 +64,6 @@ fn two_devices_are_compared_in_numbers() {
         }
         let label = if other == Device::Gpu { "GPU" } else { "f64" };
         check_figures(&mut harness, ["CPU", label]);
-        // The points of both are copied.
-        control(&harness, "Copy").click();
-        let names = |text: &str| {
-            let mut names: Vec<String> =
-                text.lines().skip(1).map(|line| line.split(',').next().unwrap().to_owned()).collect();
-            names.dedup();
-            names
-        };
-        // A click takes a frame or two.
-        let copied = (0..4).find_map(|_| {
-            harness.step();
-            harness.output().platform_output.commands.iter().find_map(|command| match command {
-                OutputCommand::CopyText(text) => Some(names(text)),
-                _ => None,
-            })
-        });
-        let backend = if other == Device::Gpu { "gpu" } else { "reference" };
-        assert_eq!(copied.unwrap(), ["cpu", backend]);
         // The other one continues to the next goal, and both again have the same samples.
         let before = harness.state().status().samples_per_pixel;
         send(&mut harness, Command::Pause);
@@ -105,22 +87,6 @@ fn the_film_stays_when_devices_are_compared() {
     harness.run_steps(60);
     until(&mut harness, "both ends", are_both_over);
     assert_eq!(harness.state().status().run, run);
-}
-
-#[test]
-fn a_new_start_keeps_the_curve_of_before() {
-    let mut harness = open_sized(&format!("{ARGUMENTS} --samples 32"), [1280.0, 800.0]);
-    until(&mut harness, "the end", |window| window.status().phase.is_over());
-    let first = harness.state().status().history.clone();
-    send(&mut harness, Command::ErrorDock);
-    send(&mut harness, Command::Restart);
-    until(&mut harness, "the second end", |window| {
-        window.status().run > 1 && window.status().phase.is_over()
-    });
-    assert_eq!(harness.state().earlier_curves(), first);
-    harness.state_mut().document_mut().camera.vfov_degrees = 30.0;
-    harness.run_steps(3);
-    assert!(harness.state().earlier_curves().is_empty(), "another picture");
 }
 
 #[test]

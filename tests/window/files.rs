@@ -1,34 +1,16 @@
 //! Saving, opening, dropping, and the companion.
 
-use crate::harness::{SMALL, control, has_samples, name_file, open, save, send, until};
+use crate::harness::{SMALL, control, drop_file, has_samples, name_file, open, save, says, send, until};
 use crate::questions::Ask as _;
 use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::Path;
 use weekender::app::{Command, Window};
 use weekender::job::output::{OutputFormat, read_description};
 use weekender::job::recipe::file;
 use weekender::progressive::{Plan, Progressive, RenderRequest, Stop};
 use weekender::stages::Stage;
-
-#[derive(Debug)]
-struct Dropped(PathBuf);
-
-impl egui::DroppedFile for Dropped {
-    fn path(&self) -> &Path {
-        &self.0
-    }
-
-    fn bytes(&self) -> Result<Vec<u8>, String> {
-        std::fs::read(&self.0).map_err(|error| error.to_string())
-    }
-}
-
-fn says(words: &str) -> impl Fn(&Window) -> bool {
-    move |window| window.messages().iter().any(|message| message.contains(words))
-}
 
 /// The pixels of a render of a file's recipe, with the number of samples that the file states.
 fn rendered_again(path: &Path) -> Vec<u8> {
@@ -64,7 +46,7 @@ fn saved_files_open_again_and_keep_other_stages() {
         let own = Stop { noise: Some(0.05), ..Stop::default() };
         harness.state_mut().document_mut().stop = own;
         harness.run_steps(2);
-        harness.input_mut().dropped_files.push(Arc::new(Dropped(path.clone())));
+        drop_file(&mut harness, &path);
         let opened = format!("Opened saved{}", format.ending());
         until(&mut harness, &opened, says(&opened));
         let document = harness.state().shown_document();
@@ -103,7 +85,7 @@ fn failures_are_reported_and_the_picture_stays() {
         if let Some(content) = content {
             std::fs::write(&path, content).unwrap();
         }
-        harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
+        drop_file(&mut harness, &path);
         until(&mut harness, told, says(told));
     }
     assert_eq!(harness.state().shown_document().stage().unwrap().id, "glass-schlick");
@@ -194,7 +176,10 @@ fn undo_offer_ends_with_the_next_change() {
     harness.key_press(Key::PageDown);
     harness.run_steps(3);
     assert!(says("kept in Undo")(harness.state()), "{:?}", harness.state().messages());
+    assert_ne!(harness.state().shown_document().stage().unwrap().id, "metal");
     send(&mut harness, Command::Undo);
+    let document = harness.state().shown_document();
+    assert_eq!((document.stage().unwrap().id, document.camera.vfov_degrees), ("metal", 31.0));
     harness.run_steps(2);
     let document = harness.state().shown_document();
     assert_eq!((document.stage().unwrap().id, document.camera.vfov_degrees), ("metal", 31.0));

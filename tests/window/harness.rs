@@ -4,7 +4,8 @@ use crate::questions::Ask as _;
 use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 use weekender::app::{Command, Sizing, Window};
 use weekender::cli::{self, Request};
@@ -76,20 +77,6 @@ pub fn until_seen(harness: &mut Harness<'_, Window>, text: &str) {
     }
 }
 
-/// Draws frames until the condition holds for what is drawn.
-pub fn until_drawn<'h>(
-    harness: &mut Harness<'h, Window>,
-    what: &str,
-    is_so: impl Fn(&Harness<'h, Window>) -> bool,
-) {
-    let begin = Instant::now();
-    while !is_so(harness) {
-        assert!(begin.elapsed() < PATIENCE, "never drawn: {what}");
-        std::thread::sleep(Duration::from_millis(2));
-        harness.step();
-    }
-}
-
 /// The picture that a command for the clipboard holds, after at most this many frames.
 pub fn copied(harness: &mut Harness<'_, Window>, patience: Duration) -> Option<egui::ColorImage> {
     let begin = Instant::now();
@@ -140,7 +127,7 @@ pub fn name_file(harness: &mut Harness<'_, Window>, command: Command, path: &Pat
 pub fn save(harness: &mut Harness<'_, Window>, command: Command, path: &Path) {
     name_file(harness, command, path);
     let saved = format!("Saved {}", path.file_name().unwrap().display());
-    until(harness, &saved, |window| window.messages().contains(&saved));
+    until(harness, &saved, says(&saved));
 }
 
 /// Chooses an entry of the menu of a right click at this point.
@@ -154,6 +141,29 @@ pub fn choose_from_menu(harness: &mut Harness<'_, Window>, at: Pos2, name: &str)
     harness.run_steps(5);
     harness.get_by_label_contains(name).click();
     harness.run_steps(5);
+}
+
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+/// Drops a file on the window.
+pub fn drop_file(harness: &mut Harness<'_, Window>, path: &Path) {
+    harness.input_mut().dropped_files.push(Arc::new(Dropped(path.to_owned())));
+}
+
+/// Whether a message of the window contains these words.
+pub fn says(words: &str) -> impl Fn(&Window) -> bool {
+    move |window| window.messages().iter().any(|message| message.contains(words))
 }
 
 pub fn send(harness: &mut Harness<'_, Window>, command: Command) {

@@ -10,7 +10,6 @@ mod device;
 mod edits;
 mod extreme;
 mod files;
-mod first_steps;
 mod harness;
 mod kept;
 mod moving;

@@ -21,15 +21,6 @@ fn a_drag_on_the_picture_takes_the_keys_from_a_field() {
 }
 
 #[test]
-fn the_sky_is_changed_beside_the_picture() {
-    let mut harness = open("--stage metal --size 32x18 --device cpu");
-    assert!(harness.query_all_by_label("Sky overhead").next().is_none());
-    send(&mut harness, Command::Field("Scene"));
-    harness.run_steps(20);
-    assert!(harness.query_all_by_label("Sky overhead").next().is_some() && !harness.state().has_dialog());
-}
-
-#[test]
 fn stages_without_rays_have_no_camera() {
     let harness = open("--stage ppm-tiny");
     assert!(harness.query_all_by_label("Field of view").next().is_none());

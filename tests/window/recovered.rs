@@ -1,8 +1,8 @@
 //! State that the next window takes over: settings, and the autosaved film.
 
-use crate::harness::{has_samples, opened, send, until};
+use crate::harness::{has_samples, opened, says, send, until};
 use crate::questions::Ask as _;
-use crate::right::{drop_file, gradient, until_compared};
+use crate::right::{drop_picture, gradient, until_compared};
 use eframe::{App, Storage};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -70,7 +70,7 @@ fn the_picture_before_a_check_comes_back_with_its_samples() {
     let state = tempfile::tempdir().unwrap();
     let mut first = window(&format!("{PICTURE} --samples 40"), state.path(), 3600);
     until(&mut first, "the end", has_samples(40));
-    let _checked = drop_file(&mut first, &gradient(false));
+    let _checked = drop_picture(&mut first, &gradient(false));
     until_compared(&mut first);
     assert_ne!(first.state().shown_document().stage().unwrap().id, "glass-schlick");
     first.state_mut().on_exit(None);
@@ -99,10 +99,6 @@ fn a_long_film_is_offered_to_the_next_window() {
     }
 }
 
-fn says(window: &Window, words: &str) -> bool {
-    window.messages().iter().any(|text| text.contains(words))
-}
-
 #[test]
 fn window_that_ended_early_resumes_its_film() {
     let state = tempfile::tempdir().unwrap();
@@ -115,7 +111,7 @@ fn window_that_ended_early_resumes_its_film() {
 
     let mut next = window("--device cpu", state.path(), 3600);
     assert_eq!(next.state().shown_document().camera.vfov_degrees, 31.0);
-    assert!(says(next.state(), "ended early") && !has_offer(&next), "{:?}", next.state().messages());
+    assert!(says("ended early")(next.state()) && !has_offer(&next), "{:?}", next.state().messages());
     until(&mut next, "its samples", |window| held(window) == samples);
     drop(next);
 
@@ -148,7 +144,7 @@ fn a_panic_saves_the_film() {
     }));
     assert!(panicked.is_err());
     let mut next = window("--device cpu", state.path(), 3600);
-    assert!(says(next.state(), "ended early"), "{:?}", next.state().messages());
+    assert!(says("ended early")(next.state()), "{:?}", next.state().messages());
     until(&mut next, "its samples", |window| held(window) >= samples);
 }
 
@@ -220,7 +216,7 @@ fn failed_autosave_is_reported_and_rendering_continues() {
     std::fs::create_dir_all(state.path().join("autosave.exr/full")).unwrap();
     let mut harness = window(&format!("{PICTURE} --samples 4000000000"), state.path(), 0);
     let told = "Autosave failed: ";
-    until(&mut harness, told, |window| window.messages().iter().any(|text| text.starts_with(told)));
+    until(&mut harness, told, says(told));
     let samples = harness.state().status().samples_per_pixel;
     until(&mut harness, "more samples", |window| window.status().samples_per_pixel > samples);
 }
@@ -233,7 +229,7 @@ fn a_failed_autosave_of_a_finished_film_is_tried_again() {
     let film = state.path().join("autosave.exr");
     std::fs::create_dir_all(film.join("full")).unwrap();
     let mut harness = window(&format!("{PICTURE} --samples 40"), state.path(), 0);
-    let has_ended = |window: &Window| window.status().phase.is_over() && says(window, "Autosave failed");
+    let has_ended = |window: &Window| window.status().phase.is_over() && says("Autosave failed")(window);
     until(&mut harness, "the end", has_ended);
     let mut wait = || {
         for _ in 0..100 {

@@ -1,11 +1,9 @@
 //! Films that the window resumes.
 
-use crate::harness::{has_samples, open, save, send, until};
+use crate::harness::{drop_file, has_samples, open, save, send, until};
 use crate::questions::Ask as _;
 use crate::recovered::held;
-use crate::right::Dropped;
 use std::path::Path;
-use std::sync::Arc;
 use weekender::app::{Command, Window};
 use weekender::film::checkpoint;
 use weekender::job::output::OutputFormat;
@@ -103,7 +101,7 @@ fn a_long_render_is_there_again_after_a_film_was_opened() {
     let mut harness = open("--stage metal --size 32x18 --samples 8 --device cpu");
     until(&mut harness, "the end", |window| has_samples(8)(window) && window.status().phase.is_over());
     harness.state_mut().tracing.seconds_before = Some(60.0);
-    harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
+    drop_file(&mut harness, &path);
     until(&mut harness, "the film", |window| held(window) == 40);
     send(&mut harness, Command::Undo);
     until(&mut harness, "its samples", |window| window.status().samples_per_pixel == 8);

@@ -1,12 +1,10 @@
 //! The right panel: its tabs, the code of a stage, and the check of a picture.
 
-use crate::harness::{SMALL, control, has_samples, open, send, until, until_seen};
+use crate::harness::{SMALL, control, drop_file, has_samples, open, send, until, until_seen};
 use crate::questions::Ask as _;
 use eframe::egui;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use weekender::app::{Command, Window};
 
 /// The picture of stage 2.1 at 160 × 90, as the book's first program writes it; `upside_down`, if it counts rows from
@@ -19,25 +17,12 @@ pub fn gradient(upside_down: bool) -> Vec<u8> {
     b"P6\n160 90\n255\n".iter().copied().chain(rgb8).collect()
 }
 
-#[derive(Debug)]
-pub struct Dropped(pub PathBuf);
-
-impl egui::DroppedFile for Dropped {
-    fn path(&self) -> &Path {
-        &self.0
-    }
-
-    fn bytes(&self) -> Result<Vec<u8>, String> {
-        std::fs::read(&self.0).map_err(|error| error.to_string())
-    }
-}
-
-/// Drops a file on the window.
-pub fn drop_file(harness: &mut Harness<'_, Window>, content: &[u8]) -> tempfile::TempDir {
+/// Drops a picture of this content on the window.
+pub fn drop_picture(harness: &mut Harness<'_, Window>, content: &[u8]) -> tempfile::TempDir {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("mine.ppm");
     std::fs::write(&path, content).unwrap();
-    harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
+    drop_file(harness, &path);
     directory
 }
 
@@ -52,7 +37,7 @@ pub fn until_compared(harness: &mut Harness<'_, Window>) {
 fn a_picture_of_another_program_is_checked() {
     let mut harness = open(SMALL);
     until(&mut harness, "a picture", has_samples(1));
-    let _kept = drop_file(&mut harness, &gradient(false));
+    let _kept = drop_picture(&mut harness, &gradient(false));
     until_seen(&mut harness, "It is right");
     until_compared(&mut harness);
     let document = harness.state().shown_document();
@@ -60,7 +45,7 @@ fn a_picture_of_another_program_is_checked() {
     for at in [[0, 0], [80, 40], [159, 89]] {
         assert_eq!(harness.state().other_pixel(at), harness.state().shown_pixel(at), "{at:?}");
     }
-    let _kept = drop_file(&mut harness, &gradient(true));
+    let _kept = drop_picture(&mut harness, &gradient(true));
     until(&mut harness, "the answer", |window| window.checked().is_some_and(|title| title != "It is right"));
     until_compared(&mut harness);
     control(&harness, "Go to 2.2").click();
@@ -73,7 +58,7 @@ fn a_picture_of_another_program_is_checked() {
     control(&harness, "Close").click();
     harness.run_steps(3);
     assert!(harness.state().checked().is_none() && !harness.state().is_comparing());
-    let _kept = drop_file(&mut harness, b"P6\nnothing");
+    let _kept = drop_picture(&mut harness, b"P6\nnothing");
     until_seen(&mut harness, "cannot be checked");
 }
 
@@ -83,7 +68,7 @@ fn a_check_leaves_the_users_own_picture_as_it_was() {
     send(&mut harness, Command::AddSphere);
     until(&mut harness, "my scene", |window| has_samples(40)(window) && window.status().phase.is_over());
     let own = harness.state().shown_document().clone();
-    let _kept = drop_file(&mut harness, &gradient(true));
+    let _kept = drop_picture(&mut harness, &gradient(true));
     until_compared(&mut harness);
     assert_eq!(harness.state().shown_document().size(), [160, 90]);
     control(&harness, "Close").click();
@@ -92,7 +77,7 @@ fn a_check_leaves_the_users_own_picture_as_it_was() {
     until(&mut harness, "its samples", has_samples(40));
     assert!(harness.state().status().contributions.is_empty(), "nothing was traced again");
     // A picture that was changed during a check stays.
-    let _kept = drop_file(&mut harness, &gradient(true));
+    let _kept = drop_picture(&mut harness, &gradient(true));
     until_compared(&mut harness);
     control(&harness, "Go to 2.2").click();
     harness.run_steps(3);
@@ -116,7 +101,7 @@ fn places_that_differ_are_enlarged_one_by_one() {
         false => harness.state().shown_pixel([x, y]).unwrap(),
     });
     let file: Vec<u8> = b"P6\n160 90\n255\n".iter().copied().chain(pixels).collect();
-    let _kept = drop_file(&mut harness, &file);
+    let _kept = drop_picture(&mut harness, &file);
     until_compared(&mut harness);
     let whole = harness.state().picture_rect();
     until_seen(&mut harness, "Show where");

@@ -84,7 +84,7 @@ fn panels_only_show_the_picture_smaller() {
     until(&mut harness, "the end", has_samples(2));
     let (whole, run) = (size(&harness), harness.state().status().run);
     let mut heights = Vec::new();
-    for command in [Command::KeptDock, Command::ErrorDock, Command::Code] {
+    for command in [Command::ErrorDock, Command::Code] {
         send(&mut harness, command);
         settle(&mut harness);
         heights.push(harness.get_by_label("Picture").rect().height());

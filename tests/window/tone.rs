@@ -1,6 +1,6 @@
-//! Exposure, luminance in false colours, and the histogram.
+//! Exposure, luminance in false colours, and denoising.
 
-use crate::harness::{SMALL, control, open, save, send, until, until_seen};
+use crate::harness::{SMALL, open, save, send, until, until_seen};
 use crate::questions::Ask as _;
 use eframe::egui::vec2;
 use egui_kittest::Harness;
@@ -8,7 +8,7 @@ use weekender::app::{Command, Show, Window};
 use weekender::film::{key, to_byte};
 use weekender::job::output::read_description;
 use weekender::numbers::heat::HeatScale;
-use weekender::progressive::{Phase, luminance};
+use weekender::progressive::Phase;
 
 const AT: [u32; 2] = [3, 2];
 
@@ -53,22 +53,12 @@ fn exposure_is_seen_but_not_saved() {
 #[test]
 fn luminance_has_the_colours_of_its_scale() {
     let mut harness = finished();
-    let mean = mean(&mut harness);
+    let [red, green, blue] = mean(&mut harness);
     send(&mut harness, Command::Show(Show::Luminance));
     assert!(harness.state().disabled_reason(Command::Brighter).is_some());
-    let colour = HeatScale::luminance([-8.0, 4.0]).colour(luminance(mean));
+    let luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+    let colour = HeatScale::luminance([-8.0, 4.0]).colour(luminance);
     until(&mut harness, "false colours", |window| window.shown_pixel(AT) == Some(colour));
-}
-
-#[test]
-fn the_histogram_counts_what_is_brighter_than_white() {
-    let mut harness = finished();
-    control(&harness, "View, folded").click();
-    until_seen(&mut harness, "Nothing is brighter than white.");
-    for _ in 0..8 {
-        send(&mut harness, Command::Brighter);
-    }
-    until_seen(&mut harness, "lose detail");
 }
 
 #[test]

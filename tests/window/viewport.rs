@@ -1,6 +1,6 @@
 //! The mouse on the picture, and what the picture shows.
 
-use crate::harness::{SMALL, choose_from_menu, drag, has_samples, open, send, until, until_drawn};
+use crate::harness::{SMALL, choose_from_menu, drag, has_samples, open, send, until};
 use crate::objects::{on_screen, spheres};
 use crate::questions::Ask as _;
 use eframe::egui::{self, Key, Modifiers, PointerButton, vec2};
@@ -55,20 +55,6 @@ fn the_wheel_zooms_at_the_pointer() {
     let zoomed = harness.state().picture_rect();
     assert!(zoomed.width() > 1.05 * fitted.width(), "{zoomed:?}");
     assert!(((at.x - zoomed.left()) / zoomed.width() - 0.2).abs() < 0.02, "{zoomed:?}");
-}
-
-#[test]
-fn numbers_are_in_large_pixels() {
-    let mut harness = open("--stage normals --size 8x5 --samples 1 --device cpu");
-    until(&mut harness, "a picture", has_samples(1));
-    let [red, ..] = harness.state().shown_pixel([0, 0]).unwrap();
-    assert!(red > 0);
-    until_drawn(&mut harness, "numbers", |harness| {
-        let texts = harness.output().shapes.iter().filter(|clipped| {
-            matches!(&clipped.shape, egui::Shape::Text(text) if text.galley.text().starts_with("0."))
-        });
-        texts.count() >= 8 * 5
-    });
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! A snapshot of the window for the panels, which show it but do not change it.
 
 use crate::app::model::{Document, Model};
-use crate::progressive::{HistoryPoint, Phase, Status, Stop};
+use crate::progressive::{Phase, Status, Stop};
 use std::sync::Arc;
 
 /// Whether two pictures differ by more than noise, in two sentences.
@@ -23,8 +23,6 @@ pub struct Snapshot {
     pub other: Option<Arc<Status>>,
     /// What is known about the difference of the two.
     pub verdict: Option<Verdict>,
-    /// The errors of earlier renders of the same picture, for the plot.
-    pub earlier: Vec<HistoryPoint>,
     /// Seconds of tracing that the film's samples took before this run, if known.
     pub seconds_before: Option<f64>,
     /// What Undo and Redo would change.

@@ -100,9 +100,8 @@ const CTRL: Modifiers = Modifiers::COMMAND;
 const SHIFT: Modifiers = Modifiers::SHIFT;
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
-/// The keys of the digits 1 to 9.
-const DIGITS: [Key; 9] =
-    [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
+/// The keys of the digits 1 to 7.
+const DIGITS: [Key; 7] = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7];
 
 /// All commands except places, menu by menu in the order of the menus.
 pub static ROWS: LazyLock<Vec<Row>> =
@@ -145,8 +144,6 @@ table! {
         Bookmark(usize),
         /// Selects a sphere.
         Sphere(usize),
-        /// Looks at a kept picture, counted from 0.
-        Kept(usize),
         CompareWith(Partner),
         /// Goes to the field of this name in the left panel.
         Field(&'static str),
@@ -167,8 +164,6 @@ table! {
         also("directory explorer finder");
     CopyPicture "Copy picture", "Copies the picture at full size", needs(is_live, KEPT_IS_SHOWN),
         also("clipboard");
-    CopyCommand "Copy as command", "Copies the command line that renders this picture",
-        keys(CTRL_SHIFT, Key::C), also("batch terminal shell clipboard");
     Quit "Quit", "Closes the window; the next one begins where this one ends", keys(CTRL, Key::Q), line(),
         also("close exit");
 
@@ -202,9 +197,6 @@ table! {
         off(no_presentation), on(|f| f.model.remembered.has_controls), also("left panel camera lens");
     Info "Stage and pixel", "Shows or hides the text and the numbers at the right", key(Key::I),
         off(no_presentation), on(|f| f.model.remembered.has_info), also("right panel text");
-    KeptDock "Kept pictures", "Opens the dock with the pictures that you have kept", keys(SHIFT, Key::M),
-        off(no_presentation), on(|f| f.model.remembered.dock == Some(Dock::Kept)),
-        also("slot snapshot compare");
     ErrorDock "Error", "Opens the dock with the error over time", key(Key::P), off(no_presentation),
         on(|f| f.model.remembered.dock == Some(Dock::Error)), also("plot convergence noise quality");
     Panels "Only the picture", "Hides all panels; again shows them", key(Key::Tab),
@@ -234,6 +226,14 @@ table! {
         on(|f| f.model.remembered.device == Device::Reference), also("double precision");
     Keep "Keep this picture", "Keeps a copy with all its samples, to compare with", key(Key::M), line(),
         needs(is_live, KEPT_IS_SHOWN), also("slot snapshot compare");
+    GoOnFromKept "Continue the kept picture", "Traces the kept picture that is compared with, and adds samples",
+        off(|f| match f.model.view.kept_partner() {
+            Some(kept) if kept.document.is_none() => Some("Open the file to continue it".to_owned()),
+            Some(_) => None,
+            None => Some(NOTHING_KEPT.to_owned()),
+        });
+    DeleteKept "Delete the kept picture", "Frees the memory of the kept picture that is compared with",
+        needs(has_kept, NOTHING_KEPT);
 
     [Some("Stage")]
     Stages "All stages…", "Every picture of the book, and extreme scenes such as dust and soap bubbles",
@@ -280,8 +280,6 @@ table! {
     Book "Read in the book", "Opens this section in the browser", also("web section");
 
     [Some("Help")]
-    FirstSteps "First steps", "Brings back the card with three things to try", off(no_presentation),
-        on(|f| f.model.has_first_steps), also("tutorial introduction");
     Help "Keys and mouse", "All keys, and what the mouse does", key(Key::F1), also("shortcuts keyboard help");
     Companion "Companion", "Opens the page that explains the book, at this stage", also("web read explain");
     Palette "Find a command…", "Type what you want to do", keys(CTRL, Key::P), also("palette search");
@@ -323,14 +321,6 @@ table! {
     StopSaving "Stop", "Gives up what is being made", unlisted();
     Recover "Resume", "Shows it, and adds more samples", unlisted();
     DeleteLeft "Delete it", "Deletes what the last window has left", unlisted();
-    GoOnFromKept "Continue from it", "Makes it the picture that is traced, and adds more samples",
-        off(|f| match f.model.view.kept_partner() {
-            Some(kept) if kept.document.is_none() => Some("Open the file to continue it".to_owned()),
-            Some(_) => None,
-            None => Some(NOTHING_KEPT.to_owned()),
-        }),
-        unlisted();
-    DeleteKept "Delete", "Deletes the kept picture", needs(has_kept, NOTHING_KEPT), unlisted();
     NextRay "Next ray", "", key(Key::ArrowRight), needs(|f| f.has_paths, NO_PATHS), unlisted();
     PreviousRay "Previous ray", "", key(Key::ArrowLeft), needs(|f| f.has_paths, NO_PATHS), unlisted();
     ClearPaths "Close the paths", "", unlisted();
@@ -378,17 +368,11 @@ fn family_rows() -> Vec<Row> {
         let row = Row::new(None, Command::SaveAs(format), [name, ""]);
         rows.push(row.keys(modifiers, key).needs(is_live, KEPT_IS_SHOWN).unlisted());
     }
-    for (place, digit) in DIGITS.into_iter().enumerate() {
-        let row = Row::new(None, Command::Kept(place), ["", "Shows it instead of the picture"]);
-        let is_there = move |f: &Snapshot| f.model.view.kept.get(place).is_some();
-        let row = row.keys(Modifiers::ALT, digit).needs(is_there, "No picture is kept under this number");
-        rows.push(row.unlisted());
-    }
     rows
 }
 
 const NO_SPHERE: &str = "No sphere is selected; click one";
-const NOTHING_KEPT: &str = "No kept picture is chosen; M keeps this one";
+const NOTHING_KEPT: &str = "Compare with a kept picture first; M keeps this one";
 const NO_PATHS: &str = "No paths are shown; point at the picture and press T";
 
 const KEPT_IS_SHOWN: &str = "The other picture is shown; Escape returns to the one that is traced";
@@ -427,7 +411,6 @@ impl Command {
             Command::Recent(place) => format!("Recent file {}", place + 1),
             Command::Bookmark(place) => format!("Bookmark {}", place + 1),
             Command::Sphere(place) => format!("Sphere {}", place + 1),
-            Command::Kept(place) => format!("Kept picture {}", place + 1),
             Command::Field(name) => name.to_owned(),
             _ => self.row().map_or_else(String::new, |row| row.name.to_owned()),
         }
@@ -480,12 +463,10 @@ impl Snapshot {
 
     /// The name of a command, with the change that it undoes, or the file that it opens.
     pub fn name(&self, command: Command) -> String {
-        let view = &self.model.view;
         let named = match command {
             Command::Undo => self.undo.map(|change| format!("Undo: {change}")),
             Command::Redo => self.redo.map(|change| format!("Redo: {change}")),
             Command::Copy if self.model.selected.is_some() => Some("Copy the sphere".to_owned()),
-            Command::Kept(place) => view.kept.get(place).map(|kept| kept.name.clone()),
             Command::CompareWith(partner) => Some(self.model.partner_name(partner)),
             Command::Recent(_) => {
                 self.path(command).and_then(Path::file_name).map(|name| name.display().to_string())

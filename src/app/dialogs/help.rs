@@ -12,7 +12,7 @@ const GROUPS: [&str; 8] = ["The picture", "Camera", "File", "Edit", "View", "Ren
 const TWO_COLUMNS: f32 = 640.0;
 
 /// Mouse actions, and keys that belong to no single command: group, words and keys.
-const MOUSE: [(&str, &str, &str); 18] = [
+const MOUSE: [(&str, &str, &str); 17] = [
     ("The picture", "Zoom at the pointer", "Ctrl and wheel"),
     ("The picture", "Move the picture", "Shift drag"),
     ("The picture", "Select a sphere; on the sky: none", "Click"),
@@ -26,7 +26,6 @@ const MOUSE: [(&str, &str, &str); 18] = [
     ("Camera", "Focus on what is there", "Ctrl and click"),
     ("Camera", "Look at what is there", "Double click"),
     ("Camera", "Fly; with Shift fast", "W A S D, Q E"),
-    ("The picture", "Look at a kept picture", "Alt+1 … 9"),
     ("The picture", "Move the divider of a wipe", "Drag it"),
     ("Other", "Larger or smaller text", "Ctrl+Plus, Ctrl+−"),
     ("Other", "Open a picture, film or scene", "Drop a file"),

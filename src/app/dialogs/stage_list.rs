@@ -3,7 +3,7 @@
 use super::outcome::Outcome;
 use crate::app::commands::{Command, PanelContext, Snapshot};
 use crate::app::toolkit::widgets::{caption, choice, tip};
-use crate::app::toolkit::{Finder, theme};
+use crate::app::toolkit::{Finder, has_words, theme};
 use crate::measure::stress::shown_cases;
 use crate::stages::Stage;
 use eframe::egui::text::LayoutJob;
@@ -42,14 +42,12 @@ fn words_of(row: Command, is_long: bool) -> String {
         _ => String::new(),
     };
     let help = if is_long { row.help() } else { "" };
-    format!("{} {more} {} {help}", row.name(), heading_of(row)).to_lowercase()
+    format!("{} {more} {} {help}", row.name(), heading_of(row))
 }
 
 fn found(typed: &str) -> Vec<Command> {
-    let typed = typed.to_lowercase();
     let having = |is_long| -> Vec<Command> {
-        let has = |row: &Command| typed.split_whitespace().all(|word| words_of(*row, is_long).contains(word));
-        rows().filter(has).collect()
+        rows().filter(|row| has_words(&words_of(*row, is_long), typed)).collect()
     };
     let by_name = having(false);
     if by_name.is_empty() { having(true) } else { by_name }

@@ -7,26 +7,9 @@ use crate::film::{Film, fixed_point};
 use crate::job::output::{Encoding, Linear, ReadPicture, Values};
 use crate::progressive::ReferenceMeans;
 use crate::stages::Transfer;
-use eframe::egui::{ColorImage, Context, TextureHandle, TextureOptions};
-use image::{RgbImage, imageops};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-
-/// The longer side of a small copy, pixels.
-const SMALL: u32 = 264;
-
-/// A small copy of the picture of a film.
-fn small_copy(context: &Context, film: &Film, transfer: Transfer) -> TextureHandle {
-    let (width, height) = (film.width(), film.height());
-    let rgb8 = film.to_rgb8(transfer);
-    let full = RgbImage::from_raw(width, height, rgb8).unwrap_or_default();
-    let scale = (f64::from(SMALL) / f64::from(width.max(height))).min(1.0);
-    let [width, height] = [width, height].map(|side| ((f64::from(side) * scale).round() as u32).max(1));
-    let small = imageops::thumbnail(&full, width, height);
-    let small = ColorImage::from_rgb([width as usize, height as usize], &small);
-    context.load_texture("kept", small, TextureOptions::LINEAR)
-}
 
 /// A picture that was kept. It never changes.
 pub struct Kept {
@@ -46,33 +29,31 @@ pub struct Kept {
     pub seconds: Option<f64>,
     /// Its picture to subtract from another.
     pub means: Arc<ReferenceMeans>,
-    /// A small picture of it.
-    pub thumbnail: TextureHandle,
 }
 
 impl Kept {
     /// Keeps a film of `document` that has samples.
-    pub fn new(context: &Context, document: Document, film: Film, seconds: Option<f64>) -> Self {
+    pub fn new(document: Document, film: Film, seconds: Option<f64>) -> Self {
         let (name, transfer) = (document.title(), document.rules().transfer);
-        Kept { document: Some(document), seconds, ..Kept::of(context, name, Arc::new(film), transfer) }
+        Kept { document: Some(document), seconds, ..Kept::of(name, Arc::new(film), transfer) }
     }
 
     /// Reads the picture of a file. Where it says nothing else, its light has become bytes by `transfer`.
     ///
     /// # Errors
     /// If it cannot be read or does not fit into memory.
-    pub fn read(context: &Context, path: &Path, transfer: Transfer) -> Result<Self, String> {
+    pub fn read(path: &Path, transfer: Transfer) -> Result<Self, String> {
         let picture =
             Picture::read(path, Some(Encoding::Book(transfer))).map_err(|error| error.to_string())?;
         let name = path.file_name().unwrap_or(path.as_os_str()).display().to_string();
-        Kept::of_picture(context, name, picture, transfer)
+        Kept::of_picture(name, picture, transfer)
     }
 
     /// The picture of the user's own program, whose bytes mean what those of its stage mean.
     ///
     /// # Errors
     /// If it does not fit into memory.
-    pub fn of_mine(context: &Context, name: String, mine: &Mine, transfer: Transfer) -> Result<Self, String> {
+    pub fn of_mine(name: String, mine: &Mine, transfer: Transfer) -> Result<Self, String> {
         let &Mine { width, height, format, .. } = mine;
         let rgb = mine.bytes.iter().map(|pixel| pixel.map(u16::from)).collect();
         let values = Values::Integers { most: 255, rgb };
@@ -81,15 +62,10 @@ impl Kept {
         let Linear { pixels, steps, limit } = read.linear(Encoding::Book(transfer));
         let (about, notes, film) = (format.to_owned(), Vec::new(), None);
         let picture = Picture { name: name.clone(), about, width, height, pixels, steps, limit, notes, film };
-        Kept::of_picture(context, name, picture, transfer)
+        Kept::of_picture(name, picture, transfer)
     }
 
-    fn of_picture(
-        context: &Context,
-        name: String,
-        picture: Picture,
-        transfer: Transfer,
-    ) -> Result<Self, String> {
+    fn of_picture(name: String, picture: Picture, transfer: Transfer) -> Result<Self, String> {
         let words = |error: &dyn std::fmt::Display| error.to_string();
         let film = match &picture.film {
             Some(film) => Arc::clone(film),
@@ -105,14 +81,13 @@ impl Kept {
                 Arc::new(film)
             }
         };
-        Ok(Kept { picture: Some(picture), ..Kept::of(context, name, film, transfer) })
+        Ok(Kept { picture: Some(picture), ..Kept::of(name, film, transfer) })
     }
 
-    fn of(context: &Context, name: String, film: Arc<Film>, transfer: Transfer) -> Self {
+    fn of(name: String, film: Arc<Film>, transfer: Transfer) -> Self {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         Kept {
             number: COUNT.fetch_add(1, Ordering::Relaxed),
-            thumbnail: small_copy(context, &film, transfer),
             means: Arc::new(ReferenceMeans::of(&film)),
             document: None,
             picture: None,
@@ -132,15 +107,6 @@ impl Kept {
     pub fn size(&self) -> [u32; 2] {
         [self.film.width(), self.film.height()]
     }
-
-    /// Bytes that it takes.
-    pub fn bytes(&self) -> u64 {
-        let [width, height] = self.size();
-        let of_means = size_of_val(self.means.means.as_slice());
-        let of_picture =
-            self.picture.as_ref().map_or(0, |picture| 2 * size_of_val(picture.pixels.as_slice()));
-        Film::bytes(width, height, self.film.halves().len()) + (of_means + of_picture) as u64
-    }
 }
 
 /// The list of kept pictures, oldest first. Places count from 0; the user sees them from 1.
@@ -154,10 +120,6 @@ pub struct KeptList {
 impl KeptList {
     pub fn iter(&self) -> impl Iterator<Item = &Arc<Kept>> {
         self.pictures.iter()
-    }
-
-    pub fn get(&self, place: usize) -> Option<&Arc<Kept>> {
-        self.pictures.get(place)
     }
 
     /// The picture of this number.
@@ -183,10 +145,5 @@ impl KeptList {
     /// Removes a picture; later ones move up.
     pub fn delete(&mut self, number: u64) {
         self.pictures.retain(|kept| kept.number != number);
-    }
-
-    /// Memory of all of them, bytes.
-    pub fn bytes(&self) -> u64 {
-        self.iter().map(|kept| kept.bytes()).sum()
     }
 }

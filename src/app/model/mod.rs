@@ -4,7 +4,6 @@
 pub mod animation;
 pub mod changes;
 mod checked;
-mod command_line;
 pub mod companion;
 pub mod device;
 mod document;
@@ -30,6 +29,6 @@ pub use origin::{Origin, Source};
 pub use partner::Partner;
 pub use remembered::{Dock, Remembered, Stored, Tab};
 pub use show::{Channel, Show, Tone};
-pub use sizing::Sizing;
+pub use sizing::{Sizing, at_other, laid_over};
 pub use state::{Model, Presentation};
 pub use view::{Found, Mode, ViewState};

@@ -2,8 +2,6 @@
 
 use super::{Device, Document, KeptList, Origin};
 use crate::job::recipe::Recipe;
-use crate::job::render::SamplerKind;
-use crate::progressive::describe::counted;
 use crate::stages::Stage;
 use std::sync::Arc;
 
@@ -18,10 +16,6 @@ pub enum Partner {
     Book,
     /// The same picture, traced on another device.
     Device(Device),
-    /// The same picture with another limit of rays per path.
-    Depth(u32),
-    /// The same picture with other random numbers.
-    Sampler(SamplerKind),
     /// The picture without denoising.
     Raw,
     /// The kept picture, or picture of a file, of this number.
@@ -46,8 +40,6 @@ impl Partner {
             Partner::Stage(stage) => [format!("{} {}", stage.section, stage.title), stage.section.to_owned()],
             Partner::Book => ["The book’s arithmetic".to_owned(), "the book".to_owned()],
             Partner::Device(device) => both(device.label()),
-            Partner::Depth(rays) => [format!("At most {rays} rays per path"), format!("{rays} rays")],
-            Partner::Sampler(sampler) => both(sampler_word(sampler)),
             Partner::Raw => ["Without denoising".to_owned(), "raw".to_owned()],
             Partner::Kept(number) => kept.find(number).map_or_else(Default::default, |found| {
                 let short = format!("kept {}", kept.place(found) + 1);
@@ -70,8 +62,6 @@ impl Partner {
                 "The same picture with the book’s own quadratic and its minimum distance of 0.001"
             }
             Partner::Device(_) => "The same samples on this device, which takes turns with the other one",
-            Partner::Depth(_) => "The same picture, in which longer paths end in black",
-            Partner::Sampler(_) => "The same picture with other random numbers",
             Partner::Raw => "The same samples, as they are traced",
             Partner::Kept(_) => "A picture that does not change",
             Partner::Mine => "The picture of your own program, beside that of its stage",
@@ -83,8 +73,6 @@ impl Partner {
         let both = |name: &str| [name.to_owned(), name.to_owned()];
         match self {
             Partner::Device(_) => both(device.label()),
-            Partner::Depth(_) => both(&counted(document.settings.max_depth.into(), "ray")),
-            Partner::Sampler(_) => both(sampler_word(document.settings.sampler)),
             Partner::Raw => both("denoised"),
             Partner::Mine => [format!("Ours: {}", document.title()), "ours".to_owned()],
             Partner::Usual | Partner::Stage(_) | Partner::Book | Partner::Kept(_) => {
@@ -103,7 +91,7 @@ impl Partner {
         match self {
             Partner::Stage(stage) => Some(Arc::new(Origin::of_stage(stage))),
             Partner::Book => Some(Arc::new(mine.origin.by_the_book(&mine.checked))),
-            Partner::Device(_) | Partner::Depth(_) | Partner::Sampler(_) => Some(Arc::clone(&mine.origin)),
+            Partner::Device(_) => Some(Arc::clone(&mine.origin)),
             Partner::Usual | Partner::Raw | Partner::Kept(_) | Partner::Mine => None,
         }
     }
@@ -112,31 +100,20 @@ impl Partner {
     pub fn document(self, origin: &Arc<Origin>, mine: &Document) -> Document {
         let (theirs, base) = (&origin.recipe, &mine.origin.recipe);
         let mut document = mine.clone();
-        match self {
-            Partner::Depth(rays) => document.settings.max_depth = rays,
-            Partner::Sampler(sampler) => document.settings.sampler = sampler,
-            Partner::Device(_) => {}
-            _ => {
-                if theirs.settings.max_depth != base.settings.max_depth {
-                    document.settings.max_depth = theirs.settings.max_depth;
-                }
-                if origin.usual_stop() != mine.origin.usual_stop() {
-                    document.stop = origin.usual_stop();
-                }
-                if differ_in_camera(base, theirs) {
-                    document.camera = theirs.camera;
-                }
-                (document.origin, document.checked) = (Arc::clone(origin), Arc::clone(&origin.scene));
-            }
+        if matches!(self, Partner::Device(_)) {
+            return document;
         }
+        if theirs.settings.max_depth != base.settings.max_depth {
+            document.settings.max_depth = theirs.settings.max_depth;
+        }
+        if origin.usual_stop() != mine.origin.usual_stop() {
+            document.stop = origin.usual_stop();
+        }
+        if differ_in_camera(base, theirs) {
+            document.camera = theirs.camera;
+        }
+        (document.origin, document.checked) = (Arc::clone(origin), Arc::clone(&origin.scene));
         document
-    }
-}
-
-fn sampler_word(sampler: SamplerKind) -> &'static str {
-    match sampler {
-        SamplerKind::Sobol => "Even samples",
-        SamplerKind::Independent => "Independent samples",
     }
 }
 
@@ -192,12 +169,8 @@ mod tests {
     }
 
     #[test]
-    fn one_number_tells_a_picture_from_its_partner() {
+    fn devices_trace_the_same_film() {
         let mine = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
         assert!(of(Partner::Device(Device::Reference), &mine).has_same_film(&mine));
-        let shorter = of(Partner::Depth(2), &mine);
-        let other = of(Partner::Sampler(SamplerKind::Independent), &mine);
-        assert_eq!((shorter.settings.max_depth, other.settings.sampler), (2, SamplerKind::Independent));
-        assert!(!shorter.has_same_film(&mine) && !other.has_same_film(&mine));
     }
 }

@@ -14,7 +14,6 @@ pub const RECENT_LIMIT: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Dock {
     Path,
-    Kept,
     Error,
 }
 
@@ -61,8 +60,6 @@ pub struct Remembered {
     pub mine_stage: Option<String>,
     /// The ids of the stages whose picture by another program was right.
     pub done: BTreeSet<String>,
-    /// The card with the first steps was closed: it does not reopen automatically.
-    pub is_greeted: bool,
 }
 
 impl Default for Remembered {
@@ -82,7 +79,6 @@ impl Default for Remembered {
             mine: None,
             mine_stage: None,
             done: BTreeSet::new(),
-            is_greeted: false,
         }
     }
 }

@@ -163,11 +163,6 @@ impl Tone {
         self.channel = if self.channel == Some(channel) { None } else { Some(channel) };
     }
 
-    /// The radiance that is shown as white.
-    pub fn white(&self) -> f64 {
-        (-self.exposure).exp2()
-    }
-
     /// The view of the picture.
     pub fn of_picture(&self) -> View {
         match self.channel {
@@ -184,11 +179,11 @@ mod tests {
     #[test]
     fn exposure_stays_within_its_limits() {
         let mut tone = Tone::default();
-        assert_eq!((tone.white(), tone.of_picture()), (1.0, View::Picture));
+        assert_eq!(tone.of_picture(), View::Picture);
         tone.expose(1.5);
         assert_eq!((tone.exposure, tone.of_picture()), (1.5, View::Exposed(1.5, None)));
         tone.expose(-3.5);
-        assert_eq!(tone.white(), 4.0);
+        assert_eq!(tone.exposure, -2.0);
         tone.expose(-1e3);
         assert_eq!(tone.exposure, -12.0);
     }

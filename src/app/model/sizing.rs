@@ -52,6 +52,29 @@ fn scaled([wide, high]: [u32; 2], width: u32) -> [u32; 2] {
     [width, (height.round() as u32).max(1)]
 }
 
+/// Where a picture of the size `theirs` lies over one of the size `mine`: its corner and its size, as shares of that.
+/// One of another shape lies in the middle.
+pub fn laid_over(mine: [u32; 2], theirs: [u32; 2]) -> [[f64; 2]; 2] {
+    let stretch = [0, 1].map(|axis| f64::from(mine[axis]) / f64::from(theirs[axis]));
+    let least = stretch[0].min(stretch[1]);
+    // Sizes of one shape can differ by rounding.
+    let is_same_shape = stretch[0].max(stretch[1]) < 1.02 * least;
+    let size = if is_same_shape { [1.0; 2] } else { stretch.map(|along| least / along) };
+    [size.map(|along| 0.5 * (1.0 - along)), size]
+}
+
+/// The pixel of such a picture that lies over the middle of the one at `at`.
+pub fn at_other(at: [u32; 2], mine: [u32; 2], theirs: [u32; 2]) -> Option<[u32; 2]> {
+    let [corner, size] = laid_over(mine, theirs);
+    let [x, y] = [0, 1].map(|axis| {
+        let place = ((f64::from(at[axis]) + 0.5) / f64::from(mine[axis]) - corner[axis]) / size[axis];
+        // Rounding must not lead to the pixel before.
+        let pixel = (place * f64::from(theirs[axis]) + 1e-6).floor();
+        (pixel >= 0.0 && pixel < f64::from(theirs[axis])).then_some(pixel as u32)
+    });
+    Some([x?, y?])
+}
+
 impl Document {
     /// Width and height, pixels.
     pub fn size(&self) -> [u32; 2] {
@@ -118,6 +141,22 @@ mod tests {
         }
         assert_eq!(document.fitting_size(Sizing::Viewport, [0, 500]), None);
         assert_eq!(document.fitting_size(Sizing::Viewport, [500, 0]), None);
+    }
+
+    #[test]
+    fn pictures_of_other_shapes_are_read_where_drawn() {
+        for (at, mine, theirs, expected) in [
+            ([7, 3], [32, 18], [32, 18], Some([7, 3])),
+            ([7, 3], [32, 18], [64, 36], Some([15, 7])),
+            ([7, 3], [760, 428], [400, 225], Some([3, 1])),
+            // Half as wide: in the middle.
+            ([16, 9], [32, 18], [16, 18], Some([8, 9])),
+            ([8, 9], [32, 18], [16, 18], Some([0, 9])),
+            ([7, 9], [32, 18], [16, 18], None),
+            ([24, 9], [32, 18], [16, 18], None),
+        ] {
+            assert_eq!(at_other(at, mine, theirs), expected, "{at:?} {mine:?} {theirs:?}");
+        }
     }
 
     #[test]

@@ -3,13 +3,8 @@
 use super::animation::Play;
 use super::{Device, DeviceOptions, Document, Mode, Partner, Remembered, Show, Tab, ViewState};
 use crate::backends::BackendChoice;
-use crate::job::render::SamplerKind;
 use crate::progressive::Stop;
 use crate::stages::{Shading, Stage};
-use std::sync::Arc;
-
-/// The longest paths that a picture can be compared with, in rays.
-const DEPTHS: [u32; 4] = [2, 4, 10, 50];
 
 /// A presentation: full screen, the picture with large captions, no panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,10 +38,6 @@ pub struct Model {
     pub playing: Option<Play>,
     /// Whether the window is in full-screen mode.
     pub is_full_screen: bool,
-    /// Whether the card with the first steps is shown.
-    pub has_first_steps: bool,
-    /// Which of them were done: the camera moved, a sphere selected, another picture opened.
-    pub steps_done: [bool; 3],
     /// The presentation in progress.
     pub presentation: Option<Presentation>,
 }
@@ -60,15 +51,6 @@ impl Model {
     /// Whether the right panel shows this tab.
     pub fn shows(&self, tab: Tab) -> bool {
         self.has_panels() && self.remembered.has_info && self.remembered.tab == tab
-    }
-
-    /// Notes which of the first steps were done since the document was as `before`.
-    pub fn note_steps(&mut self, before: &Document) {
-        let is_same = Arc::ptr_eq(&self.document.origin, &before.origin);
-        let is_moved = is_same && self.playing.is_none() && self.document.camera != before.camera;
-        let is_chosen = self.document.stage().is_some() && self.view.partner != Partner::Mine;
-        let done = [is_moved, self.selected.is_some(), !is_same && is_chosen];
-        self.steps_done.iter_mut().zip(done).for_each(|(step, is_done)| *step |= is_done);
     }
 
     /// The backend for the chosen device, lanes and threads.
@@ -103,13 +85,6 @@ impl Model {
         }
         if document.settings.estimate_error {
             partners.push(Partner::Raw);
-        }
-        if document.rules().shading == Shading::Path {
-            let settings = &document.settings;
-            let samplers = SamplerKind::ALL.into_iter().filter(|other| *other != settings.sampler);
-            partners.extend(samplers.map(Partner::Sampler));
-            partners
-                .extend(DEPTHS.into_iter().filter(|rays| *rays != settings.max_depth).map(Partner::Depth));
         }
         partners.extend(self.view.kept.mine.iter().map(|_| Partner::Mine));
         partners.extend(self.view.kept.iter().map(|kept| Partner::Kept(kept.number)));

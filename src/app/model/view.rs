@@ -121,14 +121,6 @@ impl ViewState {
         }
     }
 
-    /// Shows a kept picture in place of the traced one.
-    pub fn look(&mut self, place: usize) {
-        if let Some(kept) = self.kept.get(place) {
-            (self.partner, self.mode, self.show) =
-                (Partner::Kept(kept.number), Some(Mode::Flip), Show::Picture);
-        }
-    }
-
     /// Whether the other picture hides the traced one.
     pub fn is_hidden(&self) -> bool {
         self.mode == Some(Mode::Flip)

@@ -24,6 +24,13 @@ use std::sync::Arc;
 /// Limits of a coordinate, scene units.
 const POSITIONS: RangeInclusive<f64> = -LENGTH_LIMIT..=LENGTH_LIMIT;
 
+/// What to try, as long as no sphere is selected.
+const FIRST_STEPS: [&str; 3] = [
+    "Drag the picture to look around it. Home returns.",
+    "Click a sphere, then drag it or change its material.",
+    "Page Up and Page Down turn the pages of the book.",
+];
+
 /// The first chapter whose pictures need another up vector or a lens.
 const LENS_CHAPTER: u32 = 12;
 
@@ -126,7 +133,7 @@ fn sphere(ui: &mut Ui, document: &mut Document, cx: &PanelContext) {
     let reset = document.has_changed_scene().then_some("Reset spheres");
     let is_reset = group(ui, Header { title: &title, reset, ..Header::default() }, |ui| {
         let Some(selected) = selected else {
-            hint(ui, "Click a sphere in the picture to move or change it.");
+            FIRST_STEPS.iter().for_each(|step| _ = hint(ui, step));
             return;
         };
         let body = body(ui, &selected, document);

@@ -3,10 +3,10 @@
 pub mod bar;
 pub mod compare;
 pub mod controls;
-pub mod first_steps;
 pub mod plot;
 pub mod present;
 pub mod right;
 mod spheres;
 pub mod stage_panel;
 pub mod status;
+pub mod tone;

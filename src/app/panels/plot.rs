@@ -1,14 +1,14 @@
-//! The plot of error against tracing seconds, on logarithmic axes: a curve for each backend since the last restart, the
+//! The plot of error against tracing seconds, on logarithmic axes: a curve for each backend, the
 //! expected continuation, and the goal; and when a render will reach its goal.
 
 use super::compare;
 use crate::app::commands::{PanelContext, Snapshot};
 use crate::app::model::Device;
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{compact, hint, samples_words, small, swatch, tip};
+use crate::app::toolkit::widgets::{compact, hint, samples_words, small, swatch};
 use crate::numbers::statistics::fit::{Point, Prediction, predict};
 use crate::progressive::{HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, Status};
-use eframe::egui::{self, Color32, Rangef, Sense, Sides, Ui, UiBuilder, Vec2b};
+use eframe::egui::{self, Color32, Rangef, Sense, Ui, UiBuilder, Vec2b};
 use egui_plot::{
     AxisHints, HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, Points, uniform_grid_spacer,
 };
@@ -31,20 +31,10 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
         return;
     }
     let drawn = Drawn::of(ui, cx);
-    Sides::new().shrink_left().wrap().show(
-        ui,
-        |ui| {
-            ui.label("Four times the samples halve the error.");
-            drawn.names().for_each(|(colour, name)| swatch(ui, colour, name));
-        },
-        |ui| {
-            let copy = ui.button("Copy");
-            if tip(ui, copy, "Copies the points of the curves as a table (CSV)", None).clicked() {
-                let other = cx.other.iter().flat_map(|other| &other.history);
-                ui.ctx().copy_text(csv(cx.earlier.iter().chain(&status.history).chain(other)));
-            }
-        },
-    );
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Four times the samples halve the error.");
+        drawn.names().for_each(|(colour, name)| swatch(ui, colour, name));
+    });
     let race = Race::of(cx);
     let (room, width) = (ui.available_rect_before_wrap(), if race.is_some() { NUMBERS } else { 0.0 });
     if let Some(race) = race {
@@ -129,17 +119,13 @@ impl Drawn {
         let &theme::Colours { third, fourth: of_both, weak, .. } = theme::colours(ui);
         let style = |backend: &str| style(ui, backend);
         let mut drawn: Vec<Curve> = Vec::new();
-        for (backend, points) in curves(&cx.earlier, None) {
-            let name = format!("{}, before", style(backend).1);
-            drawn.push((style(backend).0.gamma_multiply(0.5), name, points));
-        }
-        for (backend, points) in curves(&status.history, newest(status)) {
+        for (backend, points) in curves(status) {
             drawn.push((style(backend).0, style(backend).1.to_owned(), points));
         }
         if let Some(other) = &cx.other {
             let is_device = cx.model.other_device().is_some();
             let [[_, name], _] = cx.model.side_names();
-            for (backend, points) in curves(&other.history, newest(other)) {
+            for (backend, points) in curves(other) {
                 drawn.push((if is_device { style(backend).0 } else { of_both }, name.clone(), points));
             }
         }
@@ -229,25 +215,18 @@ fn two_digits(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }
 
-/// The backend that traces, and the newest error.
-fn newest(status: &Status) -> Option<(&'static str, [f64; 2])> {
-    Some((status.backend.as_ref()?.name, at(points(status).last()?)))
-}
-
-/// Splits a history and the newest point into one curve for each backend; a curve begins where the previous one ends,
-/// unless a render has begun there.
-fn curves(
-    history: &[HistoryPoint],
-    newest: Option<(&'static str, [f64; 2])>,
-) -> Vec<(&'static str, Vec<[f64; 2]>)> {
+/// Splits a history and the newest error into one curve for each backend; a curve begins where the previous one ends.
+fn curves(status: &Status) -> Vec<(&'static str, Vec<[f64; 2]>)> {
     let mut curves: Vec<(&'static str, Vec<[f64; 2]>)> = Vec::new();
-    let known = history.iter().filter(|point| point.rmse_estimate > 0.0 && point.trace_seconds > 0.0);
+    let known = status.history.iter().filter(|point| point.rmse_estimate > 0.0 && point.trace_seconds > 0.0);
+    let newest = status.backend.as_ref().map(|backend| backend.name).zip(points(status).last().map(at));
     for (backend, at) in known.map(|point| (point.backend, of_history(point))).chain(newest) {
-        let from =
-            curves.last().and_then(|(_, points)| points.last().copied()).filter(|from| from[0] <= at[0]);
         match curves.last_mut() {
-            Some((name, points)) if *name == backend && from.is_some() => points.push(at),
-            _ => curves.push((backend, from.into_iter().chain([at]).collect())),
+            Some((name, points)) if *name == backend => points.push(at),
+            last => {
+                let from = last.and_then(|(_, points)| points.last().copied());
+                curves.push((backend, from.into_iter().chain([at]).collect()));
+            }
         }
     }
     curves
@@ -260,17 +239,6 @@ fn of_history(point: &HistoryPoint) -> [f64; 2] {
 /// Where a point lies in the plot: the logarithms of seconds and of per cent.
 fn at(point: &Point) -> [f64; 2] {
     [point.time.log10(), (100.0 * point.error).log10()]
-}
-
-/// The points as CSV with a header line.
-fn csv<'a>(history: impl Iterator<Item = &'a HistoryPoint>) -> String {
-    let line = |point: &HistoryPoint| {
-        let HistoryPoint { backend, samples_per_pixel, trace_seconds, rmse_estimate, rel_mse_estimate } =
-            point;
-        format!("{backend},{samples_per_pixel},{trace_seconds},{rmse_estimate},{rel_mse_estimate}\n")
-    };
-    let header = "backend,samples_per_pixel,trace_seconds,rmse_estimate,rel_mse_estimate\n";
-    history.map(line).fold(header.to_owned(), |text, line| text + &line)
 }
 
 /// A label of a logarithmic axis.
@@ -336,14 +304,11 @@ mod tests {
     #[test]
     fn each_backend_has_a_curve_that_joins_the_one_before() {
         let exact = HistoryPoint { rmse_estimate: 0.0, ..point("cpu", 4, 3.0) };
-        let history = [point("cpu", 2, 1.0), point("cpu", 4, 2.0), exact, point("gpu", 8, 2.1)];
-        let found = curves(&history, None);
+        let history = vec![point("cpu", 2, 1.0), point("cpu", 4, 2.0), exact, point("gpu", 8, 2.1)];
+        let found = curves(&Status { history, ..Status::default() });
         let names: Vec<_> = found.iter().map(|(name, points)| (*name, points.len())).collect();
         assert_eq!(names, [("cpu", 2), ("gpu", 2)]);
         assert_eq!(found[0].1[1], found[1].1[0]);
-        let text = "backend,samples_per_pixel,trace_seconds,rmse_estimate,rel_mse_estimate\n\
-                    cpu,2,1,0.07071067811865475,0.1\n";
-        assert_eq!(csv(history[..1].iter()), text);
     }
 
     #[test]

@@ -2,8 +2,8 @@
 
 use crate::app::commands::{Command, PanelContext};
 use crate::app::model::{CheckedScene, kind_word};
-use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{hint, named, shown_albedo};
+use crate::app::toolkit::{has_words, theme};
 use crate::scene::Scene;
 use eframe::egui::{
     Atom, Button, Color32, IdSalt, Key, Response, RichText, Role, ScrollArea, Stroke, TextEdit, Ui,
@@ -74,13 +74,11 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
 
 /// The spheres that have all words of a text in their name, kind or number.
 fn find(scene: &Scene, text: &str) -> Arc<[usize]> {
-    let words: Vec<_> = text.split_whitespace().map(str::to_lowercase).collect();
-    let has_words = |sphere: &usize| {
+    let is_found = |sphere: &usize| {
         let named = &scene.materials[scene.spheres[*sphere].material];
-        let own = format!("{} {} {}", named.name.to_lowercase(), kind_word(&named.material), sphere + 1);
-        words.iter().all(|word| own.contains(word))
+        has_words(&format!("{} {} {}", named.name, kind_word(&named.material), sphere + 1), text)
     };
-    (0..scene.spheres.len()).filter(|sphere| words.is_empty() || has_words(sphere)).collect()
+    (0..scene.spheres.len()).filter(|sphere| text.is_empty() || is_found(sphere)).collect()
 }
 
 fn row(ui: &mut Ui, scene: &Scene, sphere: usize, is_on: bool) -> Response {

@@ -64,8 +64,7 @@ fn stage_ui(ui: &mut Ui, stage: &Stage, cx: &PanelContext) {
 fn show_me(ui: &mut Ui, stage: &Stage, cx: &PanelContext) {
     let is_off = cx.disabled_reason(Command::ShowMe).is_some();
     ui.add_space(4.0);
-    // The card of the first steps has the one button to press next.
-    if cx.has_sight || cx.model.has_first_steps || is_off {
+    if cx.has_sight || is_off {
         let label = if cx.has_sight { "Return" } else { "Show me" };
         command_button(ui, cx, Command::ShowMe, label);
     } else {

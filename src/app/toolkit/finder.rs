@@ -6,6 +6,12 @@ use eframe::egui::{Align, Context, Event, Key, Modifiers, Response, ScrollArea, 
 /// Rows per Page Up or Page Down.
 const PAGE: usize = 8;
 
+/// Whether `text` has all words that were typed, or parts of words.
+pub fn has_words(text: &str, typed: &str) -> bool {
+    let text = text.to_lowercase();
+    typed.to_lowercase().split_whitespace().all(|word| text.contains(word))
+}
+
 /// The typed text, and the chosen row.
 #[derive(Clone, Default)]
 pub struct Finder {

@@ -27,11 +27,11 @@ pub struct Checked {
 }
 
 impl Checked {
-    fn of(found: anyhow::Result<(Mine, Finding)>, context: &egui::Context, name: String) -> Self {
+    fn of(found: anyhow::Result<(Mine, Finding)>, name: String) -> Self {
         match found {
             Ok((mine, finding)) => {
                 let (stage, rows) = (finding.stage, [mine.rows, mine.height]);
-                let kept = Kept::of_mine(context, name, &mine, stage.recipe().rules.transfer);
+                let kept = Kept::of_mine(name, &mine, stage.recipe().rules.transfer);
                 let compared = kept.ok().map(|kept| (stage, Arc::new(kept)));
                 Checked { answer: finding.answer(&mine), rows, compared }
             }
@@ -71,7 +71,6 @@ impl Check {
             *trying.lock().unwrap_or_else(PoisonError::into_inner) = what;
             window.request_repaint();
         };
-        let context = context.clone();
         let watch = move || {
             let outcome = caught(|| {
                 while answer.is_wanted() {
@@ -81,7 +80,7 @@ impl Check {
                     });
                     if let Some(found) = found {
                         say(None);
-                        answer.give(Ok(Checked::of(found, &context, name.clone())));
+                        answer.give(Ok(Checked::of(found, name.clone())));
                     }
                     sleep(POLL_INTERVAL);
                 }
@@ -109,8 +108,8 @@ impl Check {
         let mut is_answered = false;
         while let Some(outcome) = self.answers.take() {
             is_answered = true;
-            let checked = outcome
-                .unwrap_or_else(|reason| Checked::of(Err(anyhow::Error::msg(reason)), context, self.name()));
+            let checked =
+                outcome.unwrap_or_else(|reason| Checked::of(Err(anyhow::Error::msg(reason)), self.name()));
             let is_first = self.shown.is_none();
             if let Some(path) = self.path.as_ref().filter(|_| is_first && checked.compared.is_some()) {
                 remembered.note_recent(path);

@@ -2,14 +2,13 @@
 //! from one to the other.
 
 use crate::app::commands::Snapshot;
-use crate::app::model::{Document, Mode, Partner, ViewState, kind_word};
+use crate::app::model::{Document, Mode, Partner, ViewState, at_other, kind_word};
 use crate::app::toolkit::widgets::{compact, hint, tip};
 use crate::app::toolkit::{Query, theme};
 use crate::app::tracing::second::{Other, OtherId};
 use crate::app::tracing::subject::{PictureId, Subject};
 use crate::backends::layers::Layer;
 use crate::film::{Film, to_byte};
-use crate::progressive::standard_error;
 use crate::scene::Scene;
 use crate::stages::Transfer;
 use eframe::egui::{self, Align, Color32, Layout, Rect, RichText, Sense, TextStyle, Ui, UiBuilder, vec2};
@@ -28,8 +27,6 @@ pub struct Pixel {
     pub at: [u32; 2],
     /// Linear radiance.
     pub mean: [f64; 3],
-    /// Standard error of `mean`.
-    pub error: Option<[f64; 3]>,
     /// The 8-bit values in the picture.
     pub bytes: [u8; 3],
 }
@@ -43,7 +40,7 @@ impl Pixel {
         let index = y as usize * film.width() as usize + x as usize;
         let mean = film.mean(index);
         let bytes = mean.map(|v| to_byte(v, transfer, y as usize, film.height() as usize));
-        Some(Pixel { at, mean, error: standard_error(film, index), bytes })
+        Some(Pixel { at, mean, bytes })
     }
 }
 
@@ -178,22 +175,6 @@ struct Compared<'a> {
     in_bytes: bool,
 }
 
-/// Where a picture of the size `theirs` that is drawn over one of the size `mine` has what that has at `at`. Pictures of
-/// another shape lie in its middle.
-fn at_other(at: [u32; 2], mine: [u32; 2], theirs: [u32; 2]) -> Option<[u32; 2]> {
-    let stretch = [0, 1].map(|axis| f64::from(mine[axis]) / f64::from(theirs[axis]));
-    let least = stretch[0].min(stretch[1]);
-    let is_same_shape = stretch[0].max(stretch[1]) < 1.02 * least;
-    let [x, y] = [0, 1].map(|axis| {
-        let place = (f64::from(at[axis]) + 0.5) / f64::from(mine[axis]) - 0.5;
-        let place = if is_same_shape { place } else { place * stretch[axis] / least };
-        // Rounding must not lead to the pixel before.
-        let pixel = ((place + 0.5) * f64::from(theirs[axis]) + 1e-6).floor();
-        (pixel >= 0.0 && pixel < f64::from(theirs[axis])).then_some(pixel as u32)
-    });
-    Some([x?, y?])
-}
-
 /// The display names of a sphere and its material.
 fn names(scene: &Scene, sphere: usize) -> (String, String) {
     let named = &scene.materials[scene.spheres[sphere].material];
@@ -236,19 +217,13 @@ fn rows<'a>(
                 rows.push((name, format!("{name}. {what}"), values(pixel), is_wipe && is_it));
             }
             let change = [0, 1, 2].map(|i| match in_bytes {
-                true => with_sign(i32::from(mine.bytes[i]) - i32::from(theirs.bytes[i])),
-                false => signed(mine.mean[i] - theirs.mean[i]),
+                true => signed(f64::from(mine.bytes[i]) - f64::from(theirs.bytes[i]), 0),
+                false => signed(mine.mean[i] - theirs.mean[i], 4),
             });
             let help = format!("How much brighter {} is than {}", names[1], names[0]);
             rows.push(("change", help, change, !is_wipe));
         }
-        None => {
-            rows.push(("light", light.to_owned(), pixel.mean.map(decimals), true));
-            let unknown = || [(); 3].map(|()| "–".to_owned());
-            let noise = pixel.error.map_or_else(unknown, |error| error.map(decimals));
-            let help = "How far off that mean may still be (standard error)";
-            rows.push(("noise ±", help.to_owned(), noise, true));
-        }
+        None => rows.push(("light", light.to_owned(), pixel.mean.map(decimals), true)),
     }
     if mode != Some(Mode::Difference) && !in_bytes {
         let of =
@@ -259,7 +234,7 @@ fn rows<'a>(
     rows.extend(layer.map(|(layer, value)| match layer {
         Layer::Normals => {
             let help = "Which way the surface faces: x, y, z".to_owned();
-            ("normal", help, value.map(|n| signed(2.0 * n - 1.0)), true)
+            ("normal", help, value.map(|n| signed(2.0 * n - 1.0, 4)), true)
         }
         Layer::Albedo => ("albedo", "What the surface reflects".to_owned(), value.map(decimals), true),
         Layer::RaysPerPath => {
@@ -299,14 +274,10 @@ fn decimals(value: f64) -> String {
     format!("{value:.4}")
 }
 
-fn signed(value: f64) -> String {
+fn signed(value: f64, places: usize) -> String {
     // Not −0.0000.
     let value = (value * 1e4).round() / 1e4 + 0.0;
-    format!("{value:+.4}").replace('-', "−")
-}
-
-fn with_sign(value: i32) -> String {
-    format!("{value:+}").replace('-', "−")
+    format!("{value:+.places$}").replace('-', "−")
 }
 
 /// A row of the table.
@@ -337,7 +308,7 @@ mod tests {
 
     #[test]
     fn a_comparison_names_both_sides_and_tells_the_change() {
-        let pixel = |mean, bytes| Pixel { at: [0, 0], mean, error: None, bytes };
+        let pixel = |mean, bytes| Pixel { at: [0, 0], mean, bytes };
         let compared = [pixel([0.25, 0.5, 1.0], [1; 3]), pixel([0.5, 0.25, 1.0], [2; 3])];
         let readout = |is_other: bool| Readout {
             pixel: compared[usize::from(!is_other)].clone(),
@@ -356,21 +327,6 @@ mod tests {
             let of = Compared { in_bytes: true, ..of };
             let found = rows(&readout(is_other), &of, None);
             assert_eq!(found.iter().map(|row| row.2[0].as_str()).collect::<Vec<_>>(), ["1", "2", "+1"]);
-        }
-    }
-
-    #[test]
-    fn pictures_of_other_shapes_are_read_where_drawn() {
-        for (at, mine, theirs, expected) in [
-            ([7, 3], [32, 18], [32, 18], Some([7, 3])),
-            ([7, 3], [32, 18], [64, 36], Some([15, 7])),
-            // Half as wide: in the middle.
-            ([16, 9], [32, 18], [16, 18], Some([8, 9])),
-            ([8, 9], [32, 18], [16, 18], Some([0, 9])),
-            ([7, 9], [32, 18], [16, 18], None),
-            ([24, 9], [32, 18], [16, 18], None),
-        ] {
-            assert_eq!(at_other(at, mine, theirs), expected, "{at:?} {mine:?} {theirs:?}");
         }
     }
 

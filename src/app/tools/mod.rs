@@ -6,7 +6,6 @@ pub mod dock;
 pub mod inspector;
 pub mod paths;
 mod quoted;
-pub mod tone;
 
 use crate::app::model::Model;
 use crate::app::tracing::subject::Subject;

@@ -54,19 +54,18 @@ impl KeptActions {
         }
         if std::mem::take(&mut self.is_wanted) {
             let (document, answer) = (document.clone(), self.copied.promise(context));
-            let (seconds, context) = (tracing.seconds(), context.clone());
+            let seconds = tracing.seconds();
             tracing.main.inspect(move |film| {
                 let copy = film.try_copy().map_err(|error| error.to_string());
-                answer
-                    .give_from("keep", move || copy.map(|film| Kept::new(&context, document, film, seconds)));
+                answer.give_from("keep", move || copy.map(|film| Kept::new(document, film, seconds)));
             });
         }
     }
 
     /// Reads the picture of a file, to compare with.
     pub fn read(&mut self, context: &Context, model: &Model, path: PathBuf) {
-        let (transfer, own) = (model.document.rules().transfer, context.clone());
-        self.files.ask("compare", context, move || Kept::read(&own, &path, transfer));
+        let transfer = model.document.rules().transfer;
+        self.files.ask("compare", context, move || Kept::read(&path, transfer));
     }
 
     /// Compares the other picture with the traced one. An earlier question is forgotten.

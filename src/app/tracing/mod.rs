@@ -11,7 +11,7 @@ use crate::app::model::changes::Changes;
 use crate::app::model::{Device, Document, Model, Partner, Sizing};
 use crate::app::toolkit::{Answers, Toasts};
 use crate::film::Film;
-use crate::progressive::{HistoryPoint, Phase, Status, Stop};
+use crate::progressive::{Phase, Status, Stop};
 use eframe::egui::{Context, Vec2};
 use second::{Other, Second};
 use std::sync::Arc;
@@ -43,8 +43,6 @@ pub struct Tracing {
     /// The run, and how many of its messages and failures have been seen.
     seen: (u64, usize, usize),
     turn: Option<Turn>,
-    /// The curves of renders of the same picture that were started again, and that picture.
-    earlier: Option<(Document, Vec<HistoryPoint>)>,
 }
 
 /// A picture that was left for another one. One that comes back to it finds its samples.
@@ -78,7 +76,6 @@ impl Tracing {
             invalid: None,
             seen: (0, 0, 0),
             turn: None,
-            earlier: None,
         })
     }
 
@@ -101,21 +98,12 @@ impl Tracing {
         self.tracers().for_each(|tracer| tracer.progressive.resume());
     }
 
-    /// Throws the samples away and begins anew. The error over time stays, to compare with.
-    pub fn restart(&mut self, document: &Document) {
-        let mut curves = self.earlier(document).to_vec();
-        curves.extend(&self.main.status().history);
-        self.earlier = Some((document.clone(), curves));
+    /// Throws the samples away and begins anew.
+    pub fn restart(&mut self) {
         self.seconds_before = Some(0.0);
         self.left = None;
         self.main.started = None;
         self.second.tracer.iter_mut().for_each(|tracer| tracer.started = None);
-    }
-
-    /// The errors of earlier renders of the picture.
-    pub fn earlier(&self, document: &Document) -> &[HistoryPoint] {
-        let same = self.earlier.as_ref().filter(|(of, _)| of.has_same_film(document));
-        same.map_or(&[], |(_, curves)| curves)
     }
 
     /// The status of the render of the other picture, if it has one of its own.

@@ -80,9 +80,8 @@ pub struct Second {
     of: Option<Of>,
     /// Its light, to subtract.
     means: Query<OtherId, (OtherId, Arc<ReferenceMeans>)>,
-    /// Pictures of films that are not traced for the comparison. All kept ones stay, so that a flip between two does not
-    /// flicker.
-    resolved: Vec<Resolved>,
+    /// The picture of a film that is not traced for the comparison.
+    resolved: Option<Resolved>,
     resolving: Query<(OtherId, View), Bytes>,
 }
 
@@ -101,7 +100,7 @@ impl Second {
             }
             _ => {
                 let (partner, run, _) = other.id();
-                let found = self.resolved.iter().find(|(id, ..)| (id.0, id.1) == (partner, run));
+                let found = self.resolved.as_ref().filter(|(id, ..)| (id.0, id.1) == (partner, run));
                 found.map(|(.., texture)| (texture, false))
             }
         }
@@ -119,7 +118,12 @@ impl Second {
         let partner = model.view.compared(want.document);
         let is_there = self.trace(context, partner, model, want);
         self.means.follow();
-        self.take_resolved(model);
+        if self.resolving.follow()
+            && let Some((id, view, size, rgb8)) = self.resolving.answer.take()
+        {
+            let earlier = self.resolved.take().map(|(.., texture)| texture);
+            self.resolved = Some((id, view, Texture::new(size, &rgb8, earlier)));
+        }
         if let Some(other) = other(self.tracer.as_ref(), self.of.as_ref(), model, main) {
             let (id, view) = (other.id(), model.view.tone.of_picture());
             let is_kept = matches!(other, Other::Kept(_));
@@ -133,7 +137,7 @@ impl Second {
                 other.inspect(move |film| answer.give(Ok((id, Arc::new(ReferenceMeans::of(film))))));
             }
             if !is_traced
-                && !self.resolved.iter().any(is_known)
+                && !self.resolved.as_ref().is_some_and(is_known)
                 && let Some(answer) = self.resolving.ask(context, (id, view.clone()))
             {
                 let transfer = other.transfer();
@@ -193,20 +197,6 @@ impl Second {
         let of = (partner, Arc::clone(&mine.origin), Arc::clone(&mine.checked), Arc::clone(&origin));
         self.of = Some(of);
         Some(origin)
-    }
-
-    fn take_resolved(&mut self, model: &Model) {
-        if self.resolving.follow()
-            && let Some((id, view, size, rgb8)) = self.resolving.answer.take()
-        {
-            let place = self.resolved.iter().position(|(of, ..)| of.0 == id.0);
-            let earlier = place.map(|place| self.resolved.swap_remove(place).2);
-            self.resolved.push((id, view, Texture::new(size, &rgb8, earlier)));
-        }
-        self.resolved.retain(|(id, ..)| match id.0 {
-            Partner::Kept(number) => model.view.kept.find(number).is_some(),
-            _ => true,
-        });
     }
 }
 

@@ -191,14 +191,13 @@ impl Tracer {
         }
     }
 
-    /// Takes new results. For a new picture, returns the time at which its render began.
-    pub fn poll(&mut self, context: &egui::Context) -> Option<Instant> {
+    /// Takes new results.
+    pub fn poll(&mut self, context: &egui::Context) {
         self.status = Arc::new(self.progressive.status());
-        let started = self.started.as_mut()?;
+        let Some(started) = &mut self.started else { return };
         if started.preview.divisor == 1 {
             self.previews.note_speed(&self.status);
         }
-        let mut pictured = None;
         if let Some(picture) = self.progressive.newest_picture().filter(|picture| picture.run == started.run)
         {
             let earlier = self.shown.take().map(|shown| shown.texture);
@@ -216,7 +215,6 @@ impl Tracer {
                 self.previews.pictured(&started.document, started.preview.divisor, samples, seconds);
             }
             started.is_pictured = true;
-            pictured = Some(started.at);
         }
         let (age, is_pictured) = (started.at.elapsed(), started.is_pictured);
         // After many samples, the picture changes slowly.
@@ -229,7 +227,6 @@ impl Tracer {
         if self.status.phase.is_working() {
             context.request_repaint_after(interval.max(Duration::from_millis(16)));
         }
-        pictured
     }
 
     /// Whether the preview on the screen looks better than the picture would now.

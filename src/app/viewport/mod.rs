@@ -3,10 +3,9 @@
 pub mod display;
 mod moving;
 pub mod paint;
-pub mod pixel_values;
 mod placement;
 mod selection;
-pub mod visit;
+pub mod sight;
 
 pub use paint::Pictures;
 pub use placement::{Placement, Touch};

@@ -1,9 +1,8 @@
 //! Draws the viewport: the picture, the second picture, and words over them.
 
-use super::pixel_values::PixelValues;
 use super::placement::Placement;
 use crate::app::commands::Snapshot;
-use crate::app::model::{Document, Mode, Show};
+use crate::app::model::{Document, Mode, Show, laid_over};
 use crate::app::toolkit::overlay::{WHOLE, legend, plate, title, wipe};
 use crate::app::toolkit::{Texture, theme};
 use crate::app::tools::paths::Paths;
@@ -26,8 +25,6 @@ pub struct Pictures<'a> {
     pub paths: &'a Paths,
     /// The column and row of places to mark.
     pub places: &'a [[u32; 2]],
-    /// Numbers to draw in large pixels.
-    pub values: &'a PixelValues,
     /// The titles of the two pictures of a comparison, the other one first.
     pub titles: [&'a str; 2],
 }
@@ -48,19 +45,21 @@ pub(super) fn paint(
         let is_square = !is_smooth && ((times - 1.0).abs() < 1e-4 || times >= SQUARES);
         texture.id(ui.ctx(), if is_square { TextureOptions::NEAREST } else { TextureOptions::LINEAR })
     };
-    let Pictures { main, second, paths, places, values, titles } = pictures;
+    let Pictures { main, second, paths, places, titles } = pictures;
     // The hole is one point smaller, so that no gap stays between picture and background.
     let hole = if main.is_some() { rect.shrink(1.0).intersect(room) } else { Rect::NOTHING };
     fill_around(&painter, room, hole, theme::colours(ui).surround);
     let view = &snapshot.model.view;
     if let Some((texture, is_smooth)) = main {
         painter.image(id(texture, is_smooth), rect, WHOLE, Color32::WHITE);
-        values.paint(ui, room, rect, document.size(), |at| texture.colour(at));
     }
     let corners = rect.intersect(room);
     match (view.mode(), second) {
         (Some(mode @ (Mode::Wipe | Mode::Flip)), Some((texture, is_smooth))) => {
-            let left = (id(texture, is_smooth), shape_in(rect, texture.size()));
+            let [corner, size] =
+                laid_over(document.size(), texture.size()).map(|[x, y]| vec2(x as f32, y as f32));
+            let place = Rect::from_min_size(rect.min + corner * rect.size(), size * rect.size());
+            let left = (id(texture, is_smooth), place);
             let divider = if mode == Mode::Flip { 1.0 } else { divider };
             wipe(ui, &painter, rect, divider, left, titles);
         }
@@ -122,14 +121,6 @@ fn fill_around(painter: &Painter, room: Rect, hole: Rect, colour: Color32) {
     }
 }
 
-/// Where a picture of this size lies over the one at `rect`. Sizes of one shape can differ by rounding.
-fn shape_in(rect: Rect, [width, height]: [u32; 2]) -> Rect {
-    let size = vec2(width as f32, height as f32);
-    let stretch = rect.size() / size;
-    let is_same = stretch.max_elem() < 1.02 * stretch.min_elem();
-    if is_same { rect } else { Rect::from_center_size(rect.center(), size * stretch.min_elem()) }
-}
-
 /// Shows what will happen to files that are dragged over the window.
 pub(super) fn paint_drop(ui: &Ui, room: Rect) {
     let Some(file) = ui.input(|input| input.raw.hovered_files.first().cloned()) else { return };
@@ -141,20 +132,4 @@ pub(super) fn paint_drop(ui: &Ui, room: Rect) {
     let edge = Stroke::new(2.0, theme::colours(ui).accent);
     painter.rect_stroke(room.shrink(12.0), CornerRadius::same(8), edge, egui::StrokeKind::Inside);
     plate(ui, &painter, room.center(), Align2::CENTER_CENTER, text.trim_end(), room.width());
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_picture_of_another_shape_keeps_it() {
-        let rect = Rect::from_min_size(pos2(10.0, 20.0), vec2(760.0, 428.0));
-        assert_eq!(
-            [[760, 428], [400, 225], [1, 1]].map(|size| shape_in(rect, size) == rect),
-            [true, true, false]
-        );
-        let square = shape_in(rect, [300, 300]);
-        assert_eq!((square.size(), square.center()), (vec2(428.0, 428.0), rect.center()));
-    }
 }

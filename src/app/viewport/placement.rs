@@ -13,7 +13,7 @@ pub enum Zoom {
     Times(f32),
 }
 
-/// Screen pixels per pixel of the picture. The numbers of a pixel need some 90 on a screen of high resolution.
+/// Screen pixels per pixel of the picture.
 const ZOOM_LIMITS: [f32; 2] = [0.05, 128.0];
 
 /// The position and scale of the picture.

@@ -3,7 +3,7 @@
 use super::Window;
 use crate::app::commands::{Command, PanelContext, Requests};
 use crate::app::model::{Mode, Model, Partner, Remembered, Tab};
-use crate::app::panels::{bar, compare, controls, first_steps, present, right, stage_panel, status};
+use crate::app::panels::{bar, compare, controls, present, right, stage_panel, status, tone};
 use crate::app::toolkit::theme;
 use crate::app::tools::inspector::Inspector;
 use crate::app::tools::{Tools, dock};
@@ -92,7 +92,7 @@ impl Window {
                         right::foot(ui, |ui| {
                             let area = ScrollArea::vertical().max_height(height).auto_shrink([false, true]);
                             area.show(ui, |ui| {
-                                display.tone.ui(ui, view, cx);
+                                tone::ui(ui, view, cx);
                                 if !is_low {
                                     compare::ui(ui, cx);
                                 }
@@ -117,14 +117,11 @@ impl Window {
         }
     }
 
-    /// The picture, with the dock and the card of first steps below.
+    /// The picture, with the dock below.
     fn middle(&mut self, ui: &mut Ui, cx: &PanelContext) -> Touch {
         if cx.model.has_panels() {
             let Window { model, tools, .. } = self;
             dock::ui(ui, model, tools, cx);
-        }
-        if cx.model.has_panels() && cx.model.remembered.dock.is_none() {
-            first_steps::ui(ui, cx);
         }
         if cx.model.presentation.is_some() {
             let context = ui.ctx().clone();
@@ -155,7 +152,6 @@ impl Window {
                 Some(Partner::Mine) => tools.check.places(),
                 _ => &[],
             },
-            values: &display.values,
         };
         let handles = (&mut document.camera, &mut view.divider, selected);
         display.viewport.ui(ui, handles, pictures, cx)

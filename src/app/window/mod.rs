@@ -1,7 +1,6 @@
 //! The window: its parts, and the order of a frame. Only this file and `perform`, `receive` and `layout`, which extend it,
 //! know all parts.
 
-mod frame_log;
 mod input;
 mod layout;
 mod perform;
@@ -23,10 +22,8 @@ use crate::cli::WindowOptions;
 use crate::job::recipe::Recipe;
 use anyhow::{Context as _, Result};
 use eframe::egui;
-use frame_log::FrameLog;
 use shell::Shell;
-use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// The window of the program.
 #[doc(hidden)]
@@ -49,7 +46,7 @@ impl Window {
     /// A window of these options, without a display.
     ///
     /// # Errors
-    /// If the render thread cannot be started, or the frame log cannot be written.
+    /// If the render thread cannot be started.
     pub fn new(options: WindowOptions) -> Result<Self> {
         Window::with(options, None)
     }
@@ -63,7 +60,6 @@ impl Window {
         if options.is_device_given {
             remembered.device = Device::of(&options.backend);
         }
-        let has_first_steps = !options.is_picture_given && !remembered.is_greeted;
         if let Some(file) = &options.file {
             remembered.note_recent(file);
         }
@@ -92,10 +88,6 @@ impl Window {
         if has_ended_early && !steps.is_empty() {
             shell.toasts.good("The last window ended early. This is the picture that it showed");
         }
-        let create = |path: &PathBuf| {
-            FrameLog::create(path).with_context(|| format!("cannot write {}", path.display()))
-        };
-        shell.frame_log = options.frame_log.as_ref().map(create).transpose()?;
         let view = if options.is_fresh || options.is_picture_given { ViewState::default() } else { view };
         Ok(Window {
             changes: Changes::of_steps(&steps, document.clone()),
@@ -109,8 +101,6 @@ impl Window {
                 is_paused: false,
                 playing: None,
                 is_full_screen: false,
-                has_first_steps,
-                steps_done: [false; 3],
                 presentation: None,
             },
             tracing: Tracing::new().context("cannot start the render thread")?,
@@ -139,7 +129,6 @@ impl Window {
             status: self.tracing.main.status().clone(),
             other: self.tracing.other_status(&self.model),
             verdict: self.display.kept.verdict(&self.model, &self.tracing),
-            earlier: self.tracing.earlier(self.document()).to_vec(),
             seconds_before: self.tracing.seconds_before,
             undo,
             redo,
@@ -160,7 +149,7 @@ impl Window {
     pub fn ui_in(&mut self, ui: &mut egui::Ui) {
         let context = ui.ctx().clone();
         self.dress(&context);
-        self.poll(&context);
+        self.tracing.main.poll(&context);
         self.receive(&context);
         self.follow_close(&context);
         self.take_input(&context);
@@ -189,22 +178,6 @@ impl Window {
             self.files.resume(context, path, job, &self.model.document);
         }
         self.offer_left();
-    }
-
-    fn poll(&mut self, context: &egui::Context) {
-        let begin = Instant::now();
-        let pictured = self.tracing.main.poll(context);
-        let shell = &mut self.shell;
-        shell.frame_times.picture = begin.elapsed();
-        let status = self.tracing.main.status();
-        if let Some(log) = &mut shell.frame_log {
-            if let Some(begun) = pictured {
-                log.pictured(begun);
-            }
-            if let Some(backend) = status.backend.as_ref().filter(|_| status.samples_per_pixel > 0) {
-                log.tracing(status.run, backend.name);
-            }
-        }
     }
 
     fn take_input(&mut self, context: &egui::Context) {
@@ -276,7 +249,6 @@ impl Window {
         }
         self.shell.toasts.follow(&self.model.document);
         self.ask_about_size();
-        self.model.note_steps(&self.changes.last);
         let document = &self.model.document;
         // A picture without noise ends at its own number of samples, whatever the user prefers.
         if !document.is_from_file && document.origin.usual_stop().samples.is_none() {
@@ -292,9 +264,6 @@ impl Window {
         if self.changes.follow(context, &self.model.document) {
             self.tracing.seconds_before = Some(0.0);
             self.model.view.end_look();
-            if let Some(log) = &mut self.shell.frame_log {
-                log.changed();
-            }
         }
         let is_moving = self.changes.is_moving();
         if is_moving {
@@ -303,7 +272,7 @@ impl Window {
         self.leave_useless_views();
         let has_second = self.tracing.follow(context, &self.model, &self.changes);
         let Window { model, changes, tracing, display, tools, files, autosave, shell, .. } = self;
-        display.follow(context, model, tracing, is_moving, &mut shell.toasts);
+        display.follow(context, model, is_moving, &mut shell.toasts);
         let subject = Subject::new(&model.view, &model.document, tracing);
         if let Some(found) = display.denoising.follow(context, &subject, model.view.is_denoised) {
             model.view.denoised = Some(found);
@@ -374,14 +343,8 @@ impl eframe::App for Window {
         self.end();
     }
 
-    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
-        if let Some(log) = &mut self.shell.frame_log {
-            let cpu = Duration::from_secs_f32(frame.info().cpu_usage.unwrap_or_default());
-            log.frame(frame_log::FrameTimes { cpu, ..self.shell.frame_times });
-        }
-        let begin = Instant::now();
+    fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         self.ui_in(ui);
-        self.shell.frame_times.ui = begin.elapsed();
     }
 
     fn logic(&mut self, context: &egui::Context, _: &mut eframe::Frame) {

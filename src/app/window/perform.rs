@@ -12,11 +12,11 @@ use crate::app::model::spheres::grip::new_body;
 use crate::app::model::spheres::{self, Selected};
 use crate::app::model::{
     Body, Device, Dock, Document, Edit, Mode, Model, Origin, Partner, Presentation, Remembered, Show, Source,
-    Tab, Tone, companion, device, navigation,
+    Tab, Tone, companion, navigation,
 };
 use crate::app::toolkit::Finder;
 use crate::app::toolkit::widgets::{focus, samples_words};
-use crate::app::viewport::visit::Visit;
+use crate::app::viewport::sight::Sight;
 use crate::batch::{FrameNames, FramesOptions};
 use crate::film::Film;
 use crate::job::output::OutputFormat;
@@ -34,9 +34,6 @@ impl Window {
     pub fn perform(&mut self, context: &Context, command: Command) {
         self.shell.performed = Some(command);
         let snapshot = self.snapshot();
-        if let Some(log) = &mut self.shell.frame_log {
-            log.command(&snapshot.name(command));
-        }
         if self.stop_play() && command == Command::Play {
             return;
         }
@@ -81,7 +78,6 @@ impl Window {
                 None => context.send_viewport_cmd(ViewportCommand::RequestPaste),
             },
             C::CopyPicture => files.pending_copy = true,
-            C::CopyCommand => self.copy_command(context),
             C::Quit => context.send_viewport_cmd(ViewportCommand::Close),
             C::StopSaving => files.stop_saving(),
             C::Recover => self.recover(context),
@@ -148,7 +144,6 @@ impl Window {
                 focus(context, name);
             }
             C::FocusControls => self.focus_next_panel(context),
-            C::KeptDock => self.toggle_dock(Dock::Kept),
             C::ErrorDock => self.toggle_dock(Dock::Error),
             C::Panels => self.toggle_panels(),
             C::Present => self.toggle_presentation(context),
@@ -160,7 +155,7 @@ impl Window {
                 if std::mem::take(&mut model.is_paused) {
                     tracing.resume();
                 }
-                tracing.restart(document);
+                tracing.restart();
             }
             C::RenderAtSize => {
                 document.has_own_size = false;
@@ -177,7 +172,6 @@ impl Window {
             }
 
             C::Keep => display.kept.is_wanted = true,
-            C::Kept(place) => view.look(place),
             C::OnlyNoise => {
                 display.kept.is_asked = true;
                 if view.mode().is_none() {
@@ -218,10 +212,6 @@ impl Window {
             }
             C::Companion => self.show_companion(context),
 
-            C::FirstSteps => {
-                (model.has_first_steps, remembered.is_greeted) =
-                    (!model.has_first_steps, model.has_first_steps);
-            }
             C::Help => shell.dialogs.open(Dialog::Help),
             C::Palette => shell.dialogs.open(Dialog::Palette(Finder::typed(context))),
             C::About => shell.dialogs.open(Dialog::About),
@@ -252,8 +242,6 @@ impl Window {
             model.view.choose(Show::Picture);
         } else if model.selected.is_some() {
             model.selected = None;
-        } else if model.has_first_steps {
-            commands.push(Command::FirstSteps);
         } else if model.remembered.dock.is_some() {
             model.remembered.dock = None;
         } else if model.is_full_screen {
@@ -444,24 +432,24 @@ impl Window {
     fn visit_checked(&mut self) {
         let Some((stage, mine)) = self.tools.check.found() else { return };
         let size = mine.size();
-        let begun = self.display.check.take().filter(|visit| visit.is_of(self.document()));
+        let is_of = |[_, of]: &[Document; 2]| Arc::ptr_eq(&of.origin, &self.document().origin);
+        let begun = self.display.check.clone().filter(is_of);
         let is_shown = self.document().stage() == Some(stage) && self.document().size() == size;
         if begun.is_some() && is_shown {
-            self.display.check = begun;
             return;
         }
         self.end_sight();
-        let visit = begun.unwrap_or_else(|| {
+        if begun.is_none() {
             self.tracing.keep();
-            Visit::from(&self.model.document, &self.model.view, &self.display.viewport.placement)
-        });
+        }
+        let before = begun.map_or_else(|| self.document().clone(), |[before, _]| before);
         let tab = self.model.remembered.tab;
         let mut document = self.fresh(Origin::of_stage(stage));
         document.give_size(size);
         self.show_document(document);
         self.model.remembered.tab = tab;
         self.display.viewport.placement.fit();
-        self.display.check = Some(visit.at(self.document(), &self.model.view));
+        self.display.check = Some([before, self.document().clone()]);
     }
 
     /// Takes what a check has found, and shows it if the check is in sight.
@@ -486,15 +474,14 @@ impl Window {
         }
     }
 
-    /// Returns to what was shown before the pictures of a check.
+    /// Returns to the picture that was shown before a check, unless the one of the check was changed.
     pub(super) fn end_check(&mut self) {
         self.model.view.kept.mine = None;
-        let Some(visit) = self.display.check.take() else { return };
+        let Some([before, of_check]) = self.display.check.take() else { return };
         self.end_sight();
-        let (document, view) = (&mut self.model.document, &mut self.model.view);
-        if visit.end(document, view, &mut self.display.viewport.placement) {
-            self.model.selected = None;
-            self.tools.forget();
+        self.model.view.leave_partner();
+        if self.document().has_same_film(&of_check) {
+            self.show_document(before);
         }
     }
 
@@ -527,7 +514,7 @@ impl Window {
         }
         let Some(stage) = self.document().stage() else { return };
         let (document, view) = (&mut self.model.document, &mut self.model.view);
-        self.display.sight = Some(Visit::sight(stage, document, view, &mut self.display.viewport.placement));
+        self.display.sight = Some(Sight::show(stage, document, view, &mut self.display.viewport.placement));
     }
 
     pub(super) fn end_sight(&mut self) {
@@ -642,7 +629,6 @@ impl Window {
         }
     }
 
-    /// Goes on with this film of the document.
     /// Goes on with the film of a picture that was left before and is shown again.
     pub(super) fn find_left(&mut self) {
         if self.tracing.film.is_none()
@@ -829,27 +815,5 @@ impl Window {
                  writes the page",
             ),
         }
-    }
-
-    /// Copies the command that renders the picture, and says what it needs.
-    pub(super) fn copy_command(&mut self, context: &Context) {
-        let (document, main) = (&self.model.document, &self.tracing.main);
-        let samples = match main.status().samples_per_pixel {
-            samples @ 1.. if main.is_full(document) => samples,
-            _ => document.stop.samples.unwrap_or(document.origin.recipe.samples_per_pixel),
-        };
-        let device = self.model.remembered.device;
-        let is_gpu = matches!(device, Device::Gpu | Device::Both);
-        let adapter = device::adapter().ok().filter(|adapter| is_gpu && adapter.is_software);
-        let adapter = adapter.map(|adapter| adapter.name.as_str());
-        context.copy_text(document.command_line(samples.max(1), device.name(), adapter));
-        let needs_file = document.has_changed_scene()
-            || matches!(document.origin.source, Source::New | Source::Embedded | Source::Extreme(_));
-        let is_saved = document.checked.file().is_some();
-        self.shell.toasts.good(if needs_file && !is_saved {
-            "Copied; the scene has no file yet: save it, since the command reads it"
-        } else {
-            "Copied: the command line that renders this picture"
-        });
     }
 }

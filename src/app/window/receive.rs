@@ -3,7 +3,7 @@
 use super::Window;
 use crate::app::commands::Command;
 use crate::app::files::{Made, Opened, Resumed, name_of};
-use crate::app::model::{Dock, Document, Kept, Origin, Partner, Source};
+use crate::app::model::{Document, Kept, Origin, Partner, Source};
 use crate::job::saved::Kind;
 use crate::progressive::Stop;
 use crate::progressive::describe::counted;
@@ -118,10 +118,7 @@ impl Window {
 
     fn add_kept(&mut self, kept: Kept) {
         let place = self.model.view.keep(kept);
-        if self.model.remembered.dock.is_none() {
-            self.model.remembered.dock = Some(Dock::Kept);
-        }
-        self.shell.toasts.good(format!("Kept as number {}", place + 1));
+        self.shell.toasts.good(format!("Kept; Compare with has it as number {}", place + 1));
     }
 
     /// Watches the scene file, and takes what was read from it again.

@@ -1,6 +1,5 @@
-//! The shell around the picture: dialogs, messages, keyboard focus, and the log of frames.
+//! The shell around the picture: dialogs, messages, and keyboard focus.
 
-use super::frame_log::{FrameLog, FrameTimes};
 use crate::app::dialogs::Dialogs;
 use crate::app::toolkit::Toasts;
 use crate::system::interrupt::Interrupt;
@@ -10,8 +9,6 @@ use std::sync::Arc;
 pub struct Shell {
     pub dialogs: Dialogs,
     pub toasts: Toasts,
-    pub frame_log: Option<FrameLog>,
-    pub frame_times: FrameTimes,
     /// The command that was carried out last.
     pub performed: Option<crate::app::commands::Command>,
     /// The text that is pasted.

@@ -62,41 +62,4 @@ impl RenderSettings {
     pub fn half_count(&self) -> usize {
         if self.estimate_error { 2 } else { 1 }
     }
-
-    /// All settings except the picture's size, by the names of their flags.
-    pub fn flags(&self) -> [(&'static str, String); 4] {
-        [
-            ("depth", self.max_depth.to_string()),
-            ("sampler", self.sampler.name().to_owned()),
-            ("seed", self.seed.to_string()),
-            ("estimate-error", if self.estimate_error { "on" } else { "off" }.to_owned()),
-        ]
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Two settings that differ in every field must differ in every named value; otherwise the list lacks a setting.
-    #[test]
-    fn all_settings_but_the_size_are_named() {
-        let settings = RenderSettings::default();
-        let RenderSettings { width, height, max_depth, sampler, seed, estimate_error } = settings;
-        assert_eq!(sampler, SamplerKind::Sobol);
-        let sampler = SamplerKind::Independent;
-        let others = [
-            RenderSettings { max_depth: max_depth + 1, ..settings },
-            RenderSettings { sampler, ..settings },
-            RenderSettings { seed: seed + 1, ..settings },
-            RenderSettings { estimate_error: !estimate_error, ..settings },
-        ];
-        for other in others {
-            let differing = settings.flags().into_iter().zip(other.flags()).filter(|(a, b)| a != b);
-            assert_eq!(differing.count(), 1, "{other:?}");
-        }
-        assert_eq!(settings.flags().len(), others.len());
-        assert_eq!((width, height), (800, 450));
-        assert_eq!(settings.flags().map(|(_, value)| value), ["50", "sobol", "0", "on"]);
-    }
 }

@@ -4,7 +4,7 @@ mod paint;
 mod side;
 mod tab;
 
-use crate::app::model::{Document, best_isa};
+use crate::app::model::{Document, at_other, best_isa};
 use crate::app::toolkit::Query;
 use crate::backends::explain::{Step, steps};
 use crate::render_cpu::PathRecorder;
@@ -88,9 +88,12 @@ impl Paths {
             && listed.paths.len() as u64 == count_in(document)
             && listed.document.settings == document.settings;
         if !self.query.answers.is_open() && !is_same {
-            let (pixel, sizes) = (listed.pixel, [listed.document.size(), document.size()]);
+            let pixel = at_other(listed.pixel, listed.document.size(), document.size());
             let before = Document { camera: listed.document.camera, ..document.clone() };
-            self.list(&before, at_same_place(pixel, sizes), context);
+            match pixel {
+                Some(pixel) => self.list(&before, pixel, context),
+                None => self.forget(),
+            }
         }
     }
 
@@ -128,15 +131,6 @@ fn count_in(document: &Document) -> u64 {
 
 fn is_ground(sphere: &Sphere) -> bool {
     sphere.radius >= GROUND_RADIUS
-}
-
-/// The pixel of a picture of another size that contains the middle of this one.
-pub fn at_same_place(pixel: [u32; 2], [before, after]: [[u32; 2]; 2]) -> [u32; 2] {
-    [0, 1].map(|axis| {
-        let middle = 2 * u64::from(pixel[axis]) + 1;
-        let place = middle * u64::from(after[axis]) / (2 * u64::from(before[axis]).max(1));
-        u32::try_from(place).unwrap_or(u32::MAX).min(after[axis].saturating_sub(1))
-    })
 }
 
 #[cfg(test)]
