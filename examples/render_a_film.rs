@@ -51,9 +51,9 @@ pub fn render(recipe: &Recipe, directory: &Path) -> Result<(Film, ErrorEstimate)
     // film in between.
     let half = recipe.samples_per_pixel / 2;
     renderer.accumulate(&job, 0..half, &mut film, &never)?;
-    let early = film.error().context("the error is estimated only with `estimate_error`")?;
+    let early = film.error().context("no path has found light")?;
     renderer.accumulate(&job, half..recipe.samples_per_pixel, &mut film, &never)?;
-    let error = film.error().context("the error is estimated only with `estimate_error`")?;
+    let error = film.error().context("no path has found light")?;
     println!("error {:.2e} after {half} samples per pixel", early.rmse);
 
     // Every file records how it was made, so that it can be opened, continued and compared.

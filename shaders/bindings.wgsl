@@ -67,9 +67,7 @@ fn rank_of(number: u32) -> u32 {
 // Adds the path's sums to its pixel of the film.
 fn add_to_film(path: Path) {
     let row = (path.pixel >> 16u) - dispatch.first_row;
-    // A recorded path has a film of its own.
-    let within = select(row * job.width + (path.pixel & 0xFFFFu), 0u, RECORD);
-    let pixel = path.half * dispatch.row_count * job.width + within;
+    let pixel = (path.half * dispatch.row_count + row) * job.width + (path.pixel & 0xFFFFu);
     add_wide(6u * pixel, path.sums.x);
     add_wide(6u * pixel + 2u, path.sums.y);
     add_wide(6u * pixel + 4u, path.sums.z);
@@ -80,8 +78,4 @@ fn add_wide(low: u32, more: u32) {
     if atomicAdd(&film[low], more) > 0xFFFFFFFFu - more {
         atomicAdd(&film[low + 1u], 1u);
     }
-}
-
-fn film_sum(index: u32) -> vec2u {
-    return vec2u(atomicLoad(&film[index]), atomicLoad(&film[index + 1u]));
 }

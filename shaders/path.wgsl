@@ -88,9 +88,6 @@ fn trace(tile: Tile, thread: u32, suspended: u32) -> Traced {
             if HIERARCHY && ray_is_cut {
                 break;
             }
-            if RECORD {
-                record_ray(scratch[RECORD_HEAD_RAY_COUNT] + traced.rays, path, nearest);
-            }
             traced.rays++;
         }
         let record = records[select(nearest.sphere, 0u, nearest.sphere == NONE)];

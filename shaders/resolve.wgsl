@@ -7,6 +7,10 @@ fn to_byte(linear: f32, gamma: bool) -> u32 {
     return u32(256.0 * clamp(value, 0.0, 0.999));
 }
 
+fn film_sum(index: u32) -> vec2u {
+    return vec2u(atomicLoad(&film[index]), atomicLoad(&film[index + 1u]));
+}
+
 fn mean_of(sum: vec2u, count: f32) -> f32 {
     return (f32(sum.y) * 4294967296.0 + f32(sum.x)) / FIXED_POINT_SCALE / count;
 }

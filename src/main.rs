@@ -5,7 +5,7 @@
 use std::process::ExitCode;
 use weekender::batch::{self, info, merge};
 use weekender::cli::{self, Request};
-use weekender::comparison::{check, compare, diff};
+use weekender::comparison::{check, compare};
 use weekender::system::failure::Failure;
 use weekender::system::{interrupt, journal, terminal};
 
@@ -42,7 +42,6 @@ fn run() -> Result<ExitCode, Failure> {
         Request::Batch(options) => batch::run(*options),
         Request::Merge(options) => merge::run(&options),
         Request::Info(options) => info::run(&options),
-        Request::Diff(options) => diff::run(&options).map_err(Failure::Input),
         Request::Compare(options) => compare::run(&options).map_err(Failure::Input),
         Request::Check(options) => check::run(&options).map_err(Failure::Input),
         request => run_tool(request),

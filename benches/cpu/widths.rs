@@ -1,9 +1,9 @@
 //! One body of work at several lane counts.
 
-use fearless_simd::Level;
+use fearless_simd::{Level, Simd};
 use weekender::kernel::RecordColumns;
 use weekender::render_cpu::Isa;
-use weekender::render_cpu::lanes::{Instructions, Lanes, Lanes4, Lanes8, Lanes16, MAX_LANES, Scalar, V3};
+use weekender::render_cpu::lanes::{Lanes, Lanes4, Lanes8, Lanes16, MAX_LANES, Scalar, V3};
 use weekender::render_cpu::sphere::{NONE, Rays};
 
 /// Rays, directions or draws that a body goes through: few enough for the first cache.
@@ -24,41 +24,26 @@ pub fn widths() -> Vec<usize> {
 pub fn run(width: usize, body: &impl Body) -> u32 {
     let level = Level::new();
     #[cfg(target_arch = "x86_64")]
-    {
-        if let (16, Some(simd)) = (width, level.as_avx512()) {
-            return at(simd, width, body);
-        }
-        if let Some(simd) = level.as_avx2() {
-            return at(simd, width, body);
-        }
-        if let Some(simd) = level.as_sse4_2() {
-            return at(simd, width, body);
-        }
-    }
-    #[cfg(target_arch = "aarch64")]
-    if let Some(simd) = level.as_neon() {
-        return at(simd, width, body);
-    }
-    let _ = level;
-    body.run(Scalar::<false>)
-}
-
-fn at<S: Instructions>(simd: S, width: usize, body: &impl Body) -> u32 {
     match width {
-        4 => simd.vectorize(
-            #[inline(always)]
-            || body.run(Lanes4(simd)),
-        ),
-        8 => simd.vectorize(
-            #[inline(always)]
-            || body.run(Lanes8(simd)),
-        ),
-        16 => simd.vectorize(
-            #[inline(always)]
-            || body.run(Lanes16(simd)),
-        ),
+        4 if let Some(simd) = level.as_sse4_2() => at(simd, Lanes4(simd), body),
+        8 if let Some(simd) = level.as_avx2() => at(simd, Lanes8(simd), body),
+        16 if let Some(simd) = level.as_avx512() => at(simd, Lanes16(simd), body),
         _ => body.run(Scalar::<false>),
     }
+    #[cfg(target_arch = "aarch64")]
+    match width {
+        4 if let Some(simd) = level.as_neon() => at(simd, Lanes4(simd), body),
+        8 if let Some(simd) = level.as_neon() => at(simd, Lanes8(simd), body),
+        _ => body.run(Scalar::<false>),
+    }
+}
+
+/// Compiled for the instructions of `simd`.
+fn at<S: Simd, L: Lanes<Real = f32>>(simd: S, lanes: L, body: &impl Body) -> u32 {
+    simd.vectorize(
+        #[inline(always)]
+        || body.run(lanes),
+    )
 }
 
 /// [`COUNT`] vectors, each with a number, laid out like the records of a prepared scene.

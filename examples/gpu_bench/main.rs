@@ -48,8 +48,7 @@ fn main() -> anyhow::Result<()> {
 /// A built-in scene or `field:N`.
 fn job(scene: &str, [width, height, max_depth]: [u32; 3]) -> anyhow::Result<RenderJob> {
     let mut recipe = Recipe::find(scene)?;
-    recipe.settings =
-        RenderSettings { width, height, max_depth, estimate_error: false, ..RenderSettings::default() };
+    recipe.settings = RenderSettings { width, height, max_depth, ..RenderSettings::default() };
     Ok(recipe.job()?)
 }
 

@@ -3,7 +3,7 @@
 use super::{Comparison, Mapping, Options, SIZE, Traced, compare, job, timed};
 use anyhow::Context;
 use std::rc::Rc;
-use weekender::film::PixelSum;
+use weekender::film::{HALVES, PixelSum};
 use weekender::job::render::RenderJob;
 use weekender::kernel::sampling::SampleBlock;
 use weekender::kernel::{Features, GpuBlock, GpuCounters, GpuDispatch, GpuSuspendedPath, WORKGROUP_SIZE};
@@ -97,7 +97,7 @@ pub fn measure(options: &Options) -> anyhow::Result<Comparison> {
     let described = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
     let (device, queue) = pollster::block_on(adapter.request_device(&described))?;
     let pixels = u64::from(SIZE[0]) * u64::from(SIZE[1]);
-    let length = pixels * size_of::<PixelSum>() as u64;
+    let length = HALVES * pixels * size_of::<PixelSum>() as u64;
     let buffer = |size: u64, usage| {
         device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
     };
@@ -147,7 +147,7 @@ impl GpuWay {
         };
         let blocks: Vec<GpuBlock> = ranges
             .into_iter()
-            .flat_map(|range| SampleBlock::split(range, 1, limit))
+            .flat_map(|range| SampleBlock::split(range, limit))
             .map(|block| {
                 let (counter, step) = block.counter(job.settings());
                 GpuBlock { half: block.half, counter, step, count: block.count }
@@ -286,7 +286,7 @@ impl Mapping for GpuWay {
         device.poll(PollType::wait_indefinitely())?;
         let (outcome, seconds) = timed(|| self.dispatch());
         outcome?;
-        let length = pixels * size_of::<PixelSum>() as u64;
+        let length = HALVES * pixels * size_of::<PixelSum>() as u64;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         encoder.copy_buffer_to_buffer(film, 0, staging, 0, length);
         let counted = size_of::<GpuCounters>() as u64;
@@ -302,7 +302,10 @@ impl Mapping for GpuWay {
             counters.dispatch.unfinished == 0,
             "some paths were not finished, because a thread's loop has at most {ITERATION_LIMIT} iterations; ask for fewer samples"
         );
-        let film = sums.chunks_exact(24).map(|pixel| PixelSum(bytemuck::pod_read_unaligned(pixel))).collect();
+        let sum = |pixel: &[u8]| PixelSum(bytemuck::pod_read_unaligned(pixel));
+        let mut film: Vec<PixelSum> = sums.chunks_exact(24).map(sum).collect();
+        let second = film.split_off(*pixels as usize);
+        film.iter_mut().zip(second).for_each(|(sum, more)| sum.add(more));
         Ok(Traced { seconds, film, in_use: None })
     }
 }

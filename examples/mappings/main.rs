@@ -90,8 +90,7 @@ struct Traced {
 fn job() -> anyhow::Result<RenderJob> {
     let mut recipe = Recipe::find(SCENE)?;
     let [width, height] = SIZE;
-    recipe.settings =
-        RenderSettings { width, height, max_depth: 24, estimate_error: false, ..RenderSettings::default() };
+    recipe.settings = RenderSettings { width, height, max_depth: 24, ..RenderSettings::default() };
     Ok(recipe.job()?)
 }
 

@@ -156,10 +156,10 @@ fn at<S: Instructions>(
 struct Work {
     /// `x | y << 16`, in squares of four by four.
     places: Vec<u32>,
-    /// The sampler's counter of each sample.
-    counters: Vec<u32>,
+    /// The half and the sampler's counter of each sample.
+    counters: Vec<[u32; 2]>,
     width: usize,
-    half_key: HalfKey,
+    half_keys: [HalfKey; 2],
     next: usize,
     film: Vec<PixelSum>,
 }
@@ -180,22 +180,22 @@ impl Work {
             }
         }
         let counters = (0..samples)
-            .flat_map(|sample| SampleBlock::split(sample..sample + 1, 1, 1))
-            .map(|block| block.counter(settings).0)
+            .flat_map(|sample| SampleBlock::split(sample..sample + 1, 1))
+            .map(|block| [block.half, block.counter(settings).0])
             .collect();
         Work {
             film: vec![PixelSum::default(); places.len()],
             places,
             counters,
             width: width as usize,
-            half_key: HalfKey::new(settings, 0),
+            half_keys: [0, 1].map(|half| HalfKey::new(settings, half)),
             next: 0,
         }
     }
 
-    /// The pixel and the counter of the next path.
+    /// The pixel, and the half and the counter, of the next path.
     #[inline(always)]
-    fn take(&mut self) -> Option<(u32, u32)> {
+    fn take(&mut self) -> Option<(u32, [u32; 2])> {
         let of_square = SQUARE * self.counters.len();
         let (square, within) = (self.next / of_square, self.next % of_square);
         let first = SQUARE * square;
@@ -255,7 +255,7 @@ fn trace<L: Lanes<Real = f32>>(l: L, refill: bool, scene: &BroadcastScene<f32>, 
     let (zero, one, none) = (l.constant(0.0), l.constant(1.0), l.splat_u(NONE));
     let nowhere = V3 { x: zero, y: zero, z: zero };
     let settings = &scene.prepared.settings;
-    let (mut pixels, mut counters) = (WideU::default(), WideU::default());
+    let [mut pixels, mut halves, mut counters] = [WideU::default(); 3];
     let [mut pixel, mut counter, mut key, mut stream] = [l.splat_u(0); 4];
     let mut corner = [zero; 2];
     let mut rays: Rays<L> = Rays { origin: nowhere, direction: nowhere, left: none, inside: none };
@@ -282,8 +282,8 @@ fn trace<L: Lanes<Real = f32>>(l: L, refill: bool, scene: &BroadcastScene<f32>, 
             while idle != 0 {
                 let lane = idle.trailing_zeros() as usize;
                 idle &= idle - 1;
-                let Some((place, sample)) = work.take() else { break };
-                (pixels.0[lane], counters.0[lane]) = (place, sample);
+                let Some((place, [half, sample])) = work.take() else { break };
+                (pixels.0[lane], halves.0[lane], counters.0[lane]) = (place, half, sample);
                 started |= 1 << lane;
             }
             if started | busy == 0 {
@@ -292,7 +292,8 @@ fn trace<L: Lanes<Real = f32>>(l: L, refill: bool, scene: &BroadcastScene<f32>, 
         }
         if started != 0 {
             (pixel, counter) = (l.load_u(&pixels), l.load_u(&counters));
-            key = sampler_key(l, work.half_key, pixel);
+            let [first, second] = work.half_keys.map(|half| sampler_key(l, half, pixel));
+            key = l.load_u(&halves).eq(l.splat_u(0)).select(first, second);
             let position = [L::float_of(pixel & l.splat_u(0xFFFF)), L::float_of(pixel >> 16)];
             corner = screen(l, &scene.camera, position[0], position[1]);
         }

@@ -54,7 +54,6 @@ fn completed_argument(argument: &Arg) -> Arg {
         "stage" | "only" => PossibleValuesParser::new(Stage::ALL.iter().map(|stage| stage.id)).into(),
         "isa" => PossibleValuesParser::new(levels()).into(),
         "simd" => PossibleValuesParser::new(["auto", "off", "4", "8", "16"]).into(),
-        "estimate_error" => PossibleValuesParser::new(["on", "off"]).into(),
         _ => argument.get_value_parser().clone(),
     };
     let mut shown = Arg::new(argument.get_id().clone())

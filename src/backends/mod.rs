@@ -4,10 +4,6 @@
 pub mod explain;
 pub mod layers;
 
-mod together;
-
-pub use together::Together;
-
 use crate::job::render::Renderer;
 use crate::render_cpu::{CpuOptions, CpuRenderer, Isa};
 use crate::render_gpu::{AdapterInfo, GpuOptions, GpuRenderer, adapters};
@@ -22,8 +18,6 @@ pub enum BackendChoice {
     Cpu(CpuOptions),
     /// A compute shader on the GPU.
     Gpu(GpuOptions),
-    /// Both at once, into one film.
-    Both(CpuOptions, GpuOptions),
     /// Scalar `f64` on the CPU, the reference for rounding errors.
     Reference {
         /// Number of threads; by default one per core.
@@ -49,7 +43,7 @@ impl BackendChoice {
     /// reference. `None` if all have failed.
     pub fn fallback(failed: &[BackendChoice]) -> Option<Self> {
         let given = failed.iter().rev().find_map(|choice| match choice {
-            BackendChoice::Cpu(options) | BackendChoice::Both(options, _) => Some(*options),
+            BackendChoice::Cpu(options) => Some(*options),
             _ => None,
         });
         let best = CpuOptions { isa: None, lanes: None, ..given.unwrap_or_default() };
@@ -72,7 +66,6 @@ impl BackendChoice {
             }
             BackendChoice::Cpu(_) => "the CPU",
             BackendChoice::Gpu(_) => "the GPU",
-            BackendChoice::Both(..) => "CPU and GPU",
             BackendChoice::Reference { .. } => "the reference",
         }
     }
@@ -101,7 +94,6 @@ impl BackendChoice {
         match self {
             BackendChoice::Cpu(_) => "cpu",
             BackendChoice::Gpu(_) => "gpu",
-            BackendChoice::Both(..) => "cpu,gpu",
             BackendChoice::Reference { .. } => "reference",
         }
     }
@@ -116,11 +108,6 @@ pub fn create(choice: &BackendChoice) -> Result<Box<dyn Renderer>> {
     Ok(match choice {
         BackendChoice::Cpu(options) => Box::new(CpuRenderer::new(*options)?),
         BackendChoice::Gpu(options) => Box::new(GpuRenderer::new(options.clone())?),
-        BackendChoice::Both(cpu, gpu) => {
-            // The GPU first, because it may be unavailable.
-            let gpu = GpuRenderer::new(gpu.clone())?;
-            Box::new(Together::new(vec![Box::new(CpuRenderer::new(*cpu)?), Box::new(gpu)]))
-        }
         BackendChoice::Reference { threads } => Box::new(CpuRenderer::reference(*threads)?),
     })
 }
@@ -187,12 +174,12 @@ mod tests {
     #[test]
     fn each_fallback_is_tried_once() {
         let low_priority = CpuOptions { low_priority: true, ..CpuOptions::default() };
-        let mut failed = vec![BackendChoice::Both(low_priority, GpuOptions::default())];
+        let mut failed = vec![BackendChoice::Gpu(GpuOptions::default())];
         while let Some(next) = BackendChoice::fallback(&failed) {
             failed.push(next);
         }
         let words: Vec<_> = failed.iter().map(BackendChoice::words).collect();
-        assert_eq!(words, ["CPU and GPU", "the CPU", "the CPU's scalar code", "the reference"]);
+        assert_eq!(words, ["the GPU", "the CPU", "the CPU's scalar code", "the reference"]);
         assert_eq!(failed[1], BackendChoice::Cpu(low_priority));
     }
 

@@ -94,7 +94,6 @@ fn figures(path: &Path) -> anyhow::Result<Value> {
         "seed": settings.seed,
         "samples_per_pixel": samples,
         "sample_ranges": of_film(|head| head.samples.to_string().into()),
-        "halves": of_film(|head| head.halves.into()),
         "rejected_samples": of_film(|head| head.rejected.into()),
         "film_version": of_film(|_| checkpoint::VERSION.into()),
         "sample_version": of_film(|_| checkpoint::SAMPLE_VERSION.into()),

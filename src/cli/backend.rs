@@ -12,15 +12,13 @@ enum Device {
     Auto,
     Cpu,
     Gpu,
-    #[value(name = "cpu,gpu", alias = "gpu,cpu")]
-    Both,
     Reference,
 }
 
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Device")]
 struct BackendFlags {
-    /// What renders; auto: the fastest available; cpu,gpu: both at once, into one film
+    /// What renders; auto: the fastest available
     #[arg(long, value_enum, default_value = "auto")]
     device: Device,
     /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter
@@ -54,7 +52,6 @@ impl BackendFlags {
             Device::Reference if for_packets => refuse("--simd or --isa", "the reference is scalar"),
             Device::Reference => Ok(BackendChoice::Reference { threads }),
             Device::Cpu => Ok(BackendChoice::Cpu(cpu)),
-            Device::Both => Ok(BackendChoice::Both(cpu, gpu)),
             Device::Auto if gpu.adapter.is_none() => Ok(BackendChoice::auto(cpu, gpu)),
             Device::Auto | Device::Gpu => Ok(BackendChoice::Gpu(gpu)),
         }
@@ -103,7 +100,6 @@ mod tests {
             ("--adapter some", BackendChoice::Gpu(gpu())),
             ("--device gpu --adapter some --threads 3", BackendChoice::Gpu(gpu())),
             ("--device cpu --threads 3", BackendChoice::Cpu(cpu)),
-            ("--device cpu,gpu --threads 3 --adapter some", BackendChoice::Both(cpu, gpu())),
             ("--device reference --threads 3", BackendChoice::Reference { threads: Some(3) }),
         ] {
             assert_eq!(backend(flags), Ok(expected), "{flags}");

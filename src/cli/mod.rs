@@ -3,7 +3,6 @@
 mod animation;
 mod backend;
 mod bench;
-mod diff;
 mod direct;
 mod paths;
 mod render;
@@ -14,7 +13,6 @@ mod values;
 mod window;
 
 pub use bench::{BenchOptions, BenchScene};
-pub use diff::DiffOptions;
 pub use direct::{CheckOptions, CompareOptions, StressOptions};
 pub use paths::{check_outputs, check_paths};
 pub use report::ReportOptions;
@@ -50,7 +48,6 @@ pub enum Request {
     Merge(MergeOptions),
     Info(InfoOptions),
     Bench(Box<BenchOptions>),
-    Diff(Box<DiffOptions>),
     Compare(Box<CompareOptions>),
     Report(Box<ReportOptions>),
     Stress(Box<StressOptions>),
@@ -88,10 +85,6 @@ enum Command {
     Merge(direct::MergeFlags),
     /// Show the metadata of a film, picture or scene file
     Info(direct::InfoFlags),
-    /// Show a path as two backends trace it, side by side, and where the two diverge
-    ///
-    /// The exit code is 0 if the two agree, 1 if they differ and 2 if they could not be compared.
-    Diff(Box<DiffOptions>),
     /// Tell whether two pictures are equal apart from noise, and where they differ
     ///
     /// The exit code is 0 if they are equal, 1 if they differ and 2 if they could not be compared.
@@ -152,7 +145,6 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
             Request::Report(options)
         }
         Command::Bench(options) => Request::Bench(options),
-        Command::Diff(options) => Request::Diff(options),
         Command::Compare(options) => Request::Compare(options),
         Command::Stress(options) => Request::Stress(options),
         Command::Check(options) => Request::Check(options),

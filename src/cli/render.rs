@@ -172,12 +172,6 @@ fn batch(flags: RenderFlags, command: String) -> Result<BatchOptions> {
         to_standard.filter(|path| *path == Path::new(STANDARD)).count() <= 1,
         "two of --out and --json would both write to standard output; write one of them to a file"
     );
-    let comparing = [("--noise-target", flags.stop.noise_target.is_some()), ("--denoise", files.denoise)];
-    if let Some((flag, _)) = comparing.into_iter().find(|(_, is_given)| *is_given)
-        && !job.settings().estimate_error
-    {
-        bail!("{flag} needs --estimate-error on: it compares the film's two halves");
-    }
     Ok(BatchOptions {
         plan: plan(&flags, &recipe),
         denoise: flags.files.denoise,

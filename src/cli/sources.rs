@@ -118,7 +118,7 @@ impl PictureFlags {
     }
 
     /// Replaces values of the recipe by those of the flags.
-    pub fn change(&self, recipe: &mut Recipe, estimate_error: Option<bool>) {
+    pub fn change(&self, recipe: &mut Recipe) {
         fn set<T: Copy>(value: &mut T, flag: Option<T>) {
             *value = flag.unwrap_or(*value);
         }
@@ -128,7 +128,6 @@ impl PictureFlags {
         set(&mut settings.max_depth, self.depth);
         set(&mut settings.sampler, self.sampler);
         set(&mut settings.seed, self.seed);
-        set(&mut settings.estimate_error, estimate_error);
         set(&mut camera.look_from, flags.look_from);
         set(&mut camera.look_at, flags.look_at);
         set(&mut camera.vup, flags.vup);
@@ -149,10 +148,6 @@ pub(super) struct SampleFlags {
     #[arg(long, value_name = "A..B", value_parser = range(SAMPLE_LIMIT, "0..64"),
           conflicts_with = "samples")]
     pub sample_range: Option<Range<u64>>,
-    /// Keep samples in two halves, which is needed to estimate the error; off halves the memory
-    /// [default: on, or the scene's]
-    #[arg(long, value_name = "on|off", value_parser = BoolishValueParser::new())]
-    pub estimate_error: Option<bool>,
 }
 
 /// A recipe and, if it comes from one, its stage.
@@ -178,7 +173,7 @@ pub(super) fn changed(
     flags: &PictureFlags,
     samples: &SampleFlags,
 ) -> Result<(ChosenRecipe, RenderJob)> {
-    flags.change(&mut chosen.recipe, samples.estimate_error);
+    flags.change(&mut chosen.recipe);
     chosen.recipe.samples_per_pixel = samples.samples.unwrap_or(chosen.recipe.samples_per_pixel);
     let job = chosen.recipe.job()?;
     Ok((chosen, job))

@@ -1,8 +1,6 @@
 //! Command lines and the requests that they make.
 
 use super::*;
-use crate::backends::BackendChoice;
-use crate::render_gpu::GpuOptions;
 
 fn request(line: &str) -> Result<Request, Failure> {
     parse(format!("weekender {line}").split(' ').map(Into::into))
@@ -87,37 +85,6 @@ fn backend_flags_choose_the_windows_backend() {
     for flag in ["--device cpu", "--adapter some", "--threads 3", "--simd 1", "--isa portable"] {
         assert!(is_given(flag), "{flag}");
     }
-}
-
-#[test]
-fn diff_takes_sides_and_place_from_flags() {
-    let compared = |flags: &str| match request(&format!("diff {flags}")) {
-        Ok(Request::Diff(options)) => *options,
-        other => panic!("{other:?}"),
-    };
-    let gpu = BackendChoice::Gpu(GpuOptions::of_adapter(Some("some")));
-    let sides = compared("--pixel 0,0 --sides gpu,portable --adapter some").sides().unwrap();
-    assert_eq!(sides, [gpu, BackendChoice::named("portable", None).unwrap()]);
-    for sides in ["cpu", "cpu,tpu", "cpu,gpu,reference"] {
-        let error = compared(&format!("--find --sides {sides}")).sides().unwrap_err().to_string();
-        assert!(error.contains("reference"), "{sides}: {error}");
-    }
-    let error = compared("--pixel 0,0 --sides portable,reference --adapter some").sides().unwrap_err();
-    assert!(error.to_string().contains("--adapter needs the side gpu in --sides"), "{error}");
-    for (flags, width, find) in [
-        ("--pixel 19,9 --sample 7 --size 20x10", 20, None),
-        ("--find", 200, Some(4)),
-        ("--find=9 --size 300x10", 300, Some(9)),
-    ] {
-        let options = compared(flags);
-        assert_eq!((options.job().unwrap().1.settings().width, options.find), (width, find), "{flags}");
-    }
-    let pixel = |flags: &str| {
-        let options = compared(&format!("--size 20x10 {flags}"));
-        options.pixel(&options.job().unwrap().1).map_err(|error| error.to_string())
-    };
-    assert_eq!(pixel("--pixel 19,9"), Ok([19, 9]));
-    assert!(pixel("--pixel 20,9").unwrap_err().contains("the last one is 19,9"));
 }
 
 #[test]

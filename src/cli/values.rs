@@ -153,11 +153,5 @@ pub(super) fn backend_named(name: &str, adapter: Option<&str>) -> Result<Backend
     })
 }
 
-pub(super) fn parse_pixel(text: &str) -> Result<[u32; 2], String> {
-    text.split_once(',')
-        .and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]))
-        .ok_or_else(|| "must be a column and a row separated by a comma, such as 120,45".to_owned())
-}
-
 #[cfg(test)]
 mod tests;

@@ -110,7 +110,7 @@ pub(super) fn options(
         stage,
         file: file.map(PathBuf::from),
         is_size_given: picture.size.is_some(),
-        is_picture_given: picture.is_given() || saved.is_some() || samples.estimate_error.is_some(),
+        is_picture_given: picture.is_given() || saved.is_some(),
         is_device_given: matches.contains_id("BackendFlags"),
         mine,
         is_saved: saved.is_some() && !picture.has_source(),

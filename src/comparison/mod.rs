@@ -1,10 +1,8 @@
-//! Programs on pictures: `compare` (equal except for noise?), `check` (right, or which mistake?) and `diff` (one path
-//! on two backends).
+//! Programs on pictures: `compare` (equal except for noise?) and `check` (right, or which mistake?).
 
 mod answer;
 pub mod check;
 pub mod compare;
-pub mod diff;
 mod picture;
 
 pub use picture::Picture;

@@ -51,10 +51,7 @@ impl Halves {
         );
         let counts = [0, 1].map(|half| film.half_sample_count(half));
         let (Some(error), [a, b]) = (film.error(), film.halves()) else {
-            bail!(
-                "{}, and denoising needs two halves with light: render more samples, with --estimate-error on",
-                film.why_no_error()
-            );
+            bail!("{}, and denoising needs two halves with light: render more samples", film.why_no_error());
         };
         let what = || format!("denoising {}x{} pixels", film.width(), film.height());
         let bytes = pixels * (6 * size_of::<[f32; 3]>() + size_of::<PixelSum>() + 2 * size_of::<f32>());

@@ -61,7 +61,7 @@ impl Film {
     /// The error estimated from the halves. With `A` and `B` the means of `a` and `b` samples, and `s` and `t` the parts
     /// of `mean((A - B)^2)` that are their variances, `MSE = mean((A - B)^2) (s a^2 + t b^2) / (a + b)^2`. This is a
     /// quarter of the squared difference when `a = b`, as after every even number of samples. The root is at least
-    /// [`ROUNDING_LIMIT`]. `None` with one half, while a half has no samples, and while all of it is black, because
+    /// [`ROUNDING_LIMIT`]. `None` while a half has no samples, and while all of it is black, because
     /// equal halves say nothing about light that no path has found.
     pub fn error(&self) -> Option<ErrorEstimate> {
         let [half_a, half_b] = self.halves.as_slice() else { return None };
@@ -172,17 +172,10 @@ impl Film {
 
     /// Why [`Film::error`] returns `None`.
     pub fn why_no_error(&self) -> &'static str {
-        if self.halves.len() < 2 {
-            "the film has one half"
-        } else if !self.has_both_halves() {
-            "only one half has samples"
-        } else {
-            "no path has found any light"
-        }
+        if !self.has_both_halves() { "only one half has samples" } else { "no path has found any light" }
     }
 
-    /// Whether there are two halves, each with samples.
     fn has_both_halves(&self) -> bool {
-        self.halves.len() == 2 && (0..2).all(|half| self.half_sample_count(half) > 0)
+        (0..2).all(|half| self.half_sample_count(half) > 0)
     }
 }

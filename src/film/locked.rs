@@ -65,7 +65,7 @@ mod tests {
     use std::ops::Range;
 
     fn film(samples: &[Range<u64>]) -> Film {
-        let mut film = Film::new(3, 2, 2);
+        let mut film = Film::new(3, 2);
         samples.iter().for_each(|range| film.record(range.clone(), 0).unwrap());
         film
     }

@@ -3,7 +3,7 @@
 //! A sample's radiance `x` becomes the integer `k = round(x 2^24)`, and a pixel is the 64-bit sum of its `k`. Integer
 //! sums do not depend on order, so threads, lanes, backends, machines and resumed runs all produce the same bits.
 //! Samples go to two halves in turn, and the difference of the halves gives an estimate of the error (see
-//! [`Film::error`]). A film without an error estimate has one half.
+//! [`Film::error`]).
 
 pub mod checkpoint;
 mod checksum;
@@ -40,6 +40,9 @@ const _: () = assert!((SAMPLE_LIMIT as u128) * (FIXED_POINT_MAX as u128) < 1 << 
 /// Largest width and height of a picture, pixels: a pixel's position is packed into 32 bits.
 pub const SIZE_LIMIT: u32 = 16_384;
 
+/// Sample `i` belongs to half `i mod HALVES` of a film.
+pub const HALVES: u64 = 2;
+
 /// Sums of samples for every pixel, top row first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
@@ -51,12 +54,10 @@ pub struct Film {
 }
 
 impl Film {
-    /// An empty film of `width` by `height` pixels and `half_count` halves (1 or 2).
-    /// It takes 24 bytes per pixel and half.
-    pub fn new(width: u32, height: u32, half_count: usize) -> Self {
-        debug_assert!(half_count == 1 || half_count == 2);
+    /// An empty film of `width` by `height` pixels, which takes 48 bytes per pixel.
+    pub fn new(width: u32, height: u32) -> Self {
         let pixels = width as usize * height as usize;
-        let halves = vec![vec![PixelSum::default(); pixels]; half_count];
+        let halves = vec![vec![PixelSum::default(); pixels]; HALVES as usize];
         Film { width, height, halves, samples: SampleRanges::default(), rejected: 0 }
     }
 
@@ -64,9 +65,13 @@ impl Film {
     ///
     /// # Errors
     /// [`FilmError::Memory`], before any memory is allocated.
-    pub fn try_new(width: u32, height: u32, half_count: usize) -> Result<Self, FilmError> {
+    pub fn try_new(width: u32, height: u32) -> Result<Self, FilmError> {
+        Film::zeroed(width, height, HALVES)
+    }
+
+    fn zeroed(width: u32, height: u32, half_count: u64) -> Result<Self, FilmError> {
         let what = || format!("a film of {width}x{height} pixels");
-        memory::check(what, Film::bytes(width, height, half_count), SMALLER_FILM)?;
+        memory::check(what, Film::bytes(width, height) / HALVES * half_count, SMALLER_FILM)?;
         let pixels = width as usize * height as usize;
         let half = |_| memory::zeroed::<PixelSum>(pixels, what, SMALLER_FILM);
         let halves = (0..half_count).map(half).collect::<Result<_, _>>()?;
@@ -78,7 +83,7 @@ impl Film {
     /// # Errors
     /// [`FilmError::Memory`], before any memory is allocated.
     pub fn try_copy(&self) -> Result<Self, FilmError> {
-        let mut copy = Film::try_new(self.width, self.height, self.halves.len())?;
+        let mut copy = Film::try_new(self.width, self.height)?;
         for (sums, own) in copy.halves.iter_mut().zip(&self.halves) {
             sums.copy_from_slice(own);
         }
@@ -86,35 +91,24 @@ impl Film {
         Ok(copy)
     }
 
-    /// A black film of one half that counts the same samples, for a picture made from this film.
+    /// A black film with only one half that counts the same samples, for a picture made from this film, whose error
+    /// the halves do not tell.
     ///
     /// # Errors
     /// [`FilmError::Memory`], before any memory is allocated.
     pub fn try_blank(&self) -> Result<Self, FilmError> {
-        let blank = Film::try_new(self.width, self.height, 1)?;
+        let blank = Film::zeroed(self.width, self.height, 1)?;
         Ok(Film { samples: self.samples.clone(), ..blank })
     }
 
-    /// Assembles a film from parts that were read from a file.
+    /// The film with the samples whose sums it has, which were read from a file.
     ///
     /// # Errors
-    /// [`FilmError::Parts`] if the parts do not make a valid film.
-    pub fn from_parts(
-        width: u32,
-        height: u32,
-        halves: Vec<Vec<PixelSum>>,
-        samples: SampleRanges,
-        rejected: u64,
-    ) -> Result<Self, FilmError> {
-        let film = Film { width, height, halves, samples, rejected };
-        let pixels = width as usize * height as usize;
+    /// [`FilmError::Parts`] if such samples cannot give these sums.
+    pub fn with_samples(self, samples: SampleRanges, rejected: u64) -> Result<Self, FilmError> {
+        let film = Film { samples, rejected, ..self };
+        let pixels = film.width as usize * film.height as usize;
         let invalid = |what: String| Err(FilmError::Parts { what });
-        if pixels == 0 || film.halves.iter().any(|half| half.len() != pixels) {
-            return invalid(format!("its halves do not have {width}x{height} sums"));
-        }
-        if !(1..=2).contains(&film.halves.len()) {
-            return invalid(format!("it has {} halves, but a film has 1 or 2", film.halves.len()));
-        }
         if u128::from(rejected) > u128::from(film.sample_count()) * pixels as u128 {
             let count = film.sample_count();
             return invalid(format!(
@@ -132,8 +126,8 @@ impl Film {
     }
 
     /// Bytes that the sums of such a film need.
-    pub fn bytes(width: u32, height: u32, half_count: usize) -> u64 {
-        (u64::from(width) * u64::from(height)).saturating_mul((half_count * size_of::<PixelSum>()) as u64)
+    pub fn bytes(width: u32, height: u32) -> u64 {
+        (u64::from(width) * u64::from(height)).saturating_mul(HALVES * size_of::<PixelSum>() as u64)
     }
 
     pub fn width(&self) -> u32 {
@@ -144,7 +138,7 @@ impl Film {
         self.height
     }
 
-    /// The halves: sample `i` is in half `i mod half_count`. Each is row by row from the top.
+    /// The halves, each row by row from the top.
     pub fn halves(&self) -> &[Vec<PixelSum>] {
         &self.halves
     }
@@ -165,7 +159,7 @@ impl Film {
 
     /// Samples per pixel of one half.
     pub fn half_sample_count(&self, half: usize) -> u64 {
-        self.samples.count_in_half(half, self.halves.len())
+        self.samples.count_in_half(half)
     }
 
     /// The sums, for a renderer to add to. The renderer must then record what it added: [`Film::record`].
@@ -198,9 +192,9 @@ impl Film {
     /// # Errors
     /// [`FilmError::Size`] or [`FilmError::Overlap`]. This film is then unchanged.
     pub fn merge(&mut self, other: &Film) -> Result<(), FilmError> {
-        let shape = |f: &Film| (f.width, f.height, f.halves.len());
-        if shape(self) != shape(other) {
-            return Err(FilmError::Size { mine: shape(self), theirs: shape(other) });
+        let size = |film: &Film| (film.width, film.height);
+        if size(self) != size(other) {
+            return Err(FilmError::Size { mine: size(self), theirs: size(other) });
         }
         self.samples = self.samples.union(&other.samples)?;
         self.rejected = self.rejected.saturating_add(other.rejected);
@@ -214,15 +208,14 @@ impl Film {
 }
 
 /// Remedy for a film that does not fit into memory.
-const SMALLER_FILM: &str =
-    "choose a smaller picture, halve the film with --estimate-error off, or close other programs";
+const SMALLER_FILM: &str = "choose a smaller picture or close other programs";
 
 /// Why films cannot be merged, or why data is not a film.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 pub enum FilmError {
-    /// Width, height and number of halves of the two films.
-    #[error("the films differ in shape: {}x{} with {} halves and {}x{} with {}", mine.0, mine.1, mine.2, theirs.0, theirs.1, theirs.2)]
-    Size { mine: (u32, u32, usize), theirs: (u32, u32, usize) },
+    /// Width and height of the two films.
+    #[error("the films differ in size: {}x{} and {}x{}", mine.0, mine.1, theirs.0, theirs.1)]
+    Size { mine: (u32, u32), theirs: (u32, u32) },
     #[error(
         "{}..{} is not a range of samples: the start must be below the end, and the end at most {SAMPLE_LIMIT}",
         range.start, range.end

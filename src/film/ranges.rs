@@ -1,6 +1,6 @@
 //! A set of sample indices, as disjoint ranges.
 
-use super::{FilmError, SAMPLE_LIMIT};
+use super::{FilmError, HALVES, SAMPLE_LIMIT};
 use std::fmt;
 use std::ops::Range;
 
@@ -52,10 +52,9 @@ impl SampleRanges {
         self.count
     }
 
-    /// The number of samples in half `half` of `half_count`: those with `index mod half_count == half`.
-    pub fn count_in_half(&self, half: usize, half_count: usize) -> u64 {
-        let (half, half_count) = (half as u64, half_count as u64);
-        let below = |end: u64| end / half_count + u64::from(end % half_count > half);
+    /// The number of samples in half `half`.
+    pub fn count_in_half(&self, half: usize) -> u64 {
+        let below = |end: u64| end / HALVES + u64::from(end % HALVES > half as u64);
         self.ranges.iter().map(|r| below(r.end) - below(r.start)).sum()
     }
 

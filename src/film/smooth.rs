@@ -59,7 +59,7 @@ mod tests {
 
     /// A black film of one half, except for one pixel with this sum.
     fn dot(width: u32, height: u32, at: usize, sum: u64, samples: u64) -> Film {
-        let mut film = Film::new(width, height, 1);
+        let mut film = Film::new(width, height);
         film.halves_mut()[0][at] = PixelSum([sum, 0, sum / 2]);
         film.record(0..samples, 0).unwrap();
         film
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn both_halves_are_smoothed_and_edges_repeat() {
-        let mut film = Film::new(4, 3, 2);
+        let mut film = Film::new(4, 3);
         film.halves_mut()[0][6] = PixelSum([1600, 0, 0]);
         film.halves_mut()[1][0] = PixelSum([1600, 0, 0]);
         film.record(0..2, 0).unwrap();

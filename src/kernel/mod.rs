@@ -2,7 +2,7 @@
 //!
 //! - [`records`]: the structs that a prepared scene holds and shaders read. One declaration generates the Rust
 //!   types for `f32` and `f64`, the named loads of the CPU's packets and the WGSL structs.
-//! - [`packed`]: the records that shaders read and write word by word.
+//! - [`packed`]: the record that shaders read and write word by word.
 //! - [`constants`] and [`tags`]: numbers, and enumerations that shaders represent as numbers.
 //! - [`features`]: properties of a job that need code in a kernel. They select the variant on the CPU and the pipeline
 //!   overrides on the GPU, and name the kernel's parts in summaries.
@@ -22,7 +22,7 @@ pub mod tags;
 
 pub use constants::*;
 pub use features::{Features, SortedSpheres, parts};
-pub use packed::{GpuRecordHead, GpuRecordedRay, GpuSuspendedPath, word_count};
+pub use packed::GpuSuspendedPath;
 pub use real::Real;
 pub use record::{Columns, Field, Record, Shared, words_of};
 pub use records::*;

@@ -1,6 +1,6 @@
-//! Records that shaders read and write in an array of words. Fields are packed without alignment, so a shader has no
-//! struct for them but a constant per field with its first word: `SUSPENDED_STATE` for `state` in [`GpuSuspendedPath`].
-//! `SUSPENDED_WORDS` is the number of words.
+//! The record that shaders read and write in an array of words. Its fields are packed without alignment, so a shader has
+//! no struct for it but a constant per field with its first word: `SUSPENDED_STATE` for `state`. `SUSPENDED_WORDS` is the
+//! number of words.
 
 use super::record::{Field, Record, Shared, last, record};
 use bytemuck::{Pod, Zeroable};
@@ -33,53 +33,12 @@ record! {
     }
 }
 
-record! {
-    /// The start of a recorded path.
-    #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-    pub struct GpuRecordHead as "RECORD_HEAD" {
-        /// Column of the pixel.
-        pub column: u32,
-        /// Row of the pixel.
-        pub row: u32,
-        /// Number of rays recorded so far.
-        pub ray_count: u32,
-        /// Sums that the path added to the film, low words.
-        pub sums: [u32; 3],
-    }
-}
-
-record! {
-    /// A ray of a recorded path.
-    #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-    pub struct GpuRecordedRay as "RECORDED_RAY" {
-        /// Origin of the ray.
-        pub origin: [f32; 3],
-        /// Direction of the ray.
-        pub direction: [f32; 3],
-        /// Throughput before the hit.
-        pub throughput: [f32; 3],
-        /// The sphere that is hit, or `NONE`.
-        pub sphere: u32,
-        /// Distance to the hit.
-        pub distance: f32,
-    }
-}
-
-/// Words in a record.
-pub const fn word_count<T: Pod>() -> usize {
-    size_of::<T>() / size_of::<u32>()
-}
-
 pub(super) fn wgsl() -> String {
-    constants::<GpuSuspendedPath>() + &constants::<GpuRecordHead>() + &constants::<GpuRecordedRay>()
-}
-
-fn constants<T: Record + Pod>() -> String {
-    let prefix = T::wgsl();
-    let mut text = format!("const {prefix}_WORDS = {}u;\n", word_count::<T>());
-    for Field { name, offset, .. } in T::fields() {
+    let word = size_of::<u32>();
+    let mut text = format!("const SUSPENDED_WORDS = {}u;\n", size_of::<GpuSuspendedPath>() / word);
+    for Field { name, offset, .. } in GpuSuspendedPath::fields() {
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "const {prefix}_{} = {}u;", name.to_uppercase(), offset / size_of::<u32>());
+        let _ = writeln!(text, "const SUSPENDED_{} = {}u;", name.to_uppercase(), offset / word);
     }
     text
 }

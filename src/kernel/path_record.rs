@@ -1,8 +1,6 @@
-//! One path, ray by ray, as plain data that every backend can report.
+//! One path, ray by ray, as plain data.
 
-use serde::Serialize;
-
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordedHit {
     pub sphere: usize,
     /// Along the ray, scene units.
@@ -11,7 +9,7 @@ pub struct RecordedHit {
     pub position: Option<[f64; 3]>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordedRay {
     pub origin: [f64; 3],
     pub direction: [f64; 3],
@@ -21,7 +19,7 @@ pub struct RecordedRay {
     pub hit: Option<RecordedHit>,
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PathRecord {
     /// In order; at least one, unless the stage traces no rays.
     pub rays: Vec<RecordedRay>,

@@ -1,6 +1,7 @@
 //! Sampling code that all tracers share. Each number is a pure function of (sampler, seed, pixel, sample index, bounce).
 //! No state is carried along a path, so a sample does not depend on what was traced before it.
 
+use crate::film::HALVES;
 use crate::job::render::{RenderSettings, SamplerKind};
 
 /// `2^32` over the golden ratio, rounded to an odd number: its multiples are far apart.
@@ -89,11 +90,10 @@ pub struct SampleBlock {
 
 impl SampleBlock {
     /// Splits a range of samples into blocks of at most `count_limit` (a power of two).
-    pub fn split(range: std::ops::Range<u64>, half_count: u32, count_limit: u32) -> Vec<SampleBlock> {
+    pub fn split(range: std::ops::Range<u64>, count_limit: u32) -> Vec<SampleBlock> {
         let mut blocks = Vec::new();
-        for half in 0..half_count {
-            let below =
-                |end: u64| (end + u64::from(half_count) - 1 - u64::from(half)) / u64::from(half_count);
+        for half in 0..HALVES as u32 {
+            let below = |end: u64| (end + HALVES - 1 - u64::from(half)) / HALVES;
             let (mut first, end) = (below(range.start), below(range.end));
             while first < end {
                 let aligned = if first == 0 { u64::MAX } else { 1 << first.trailing_zeros() };
@@ -109,9 +109,8 @@ impl SampleBlock {
     /// The sampler's counter for the first sample, and its increment per sample. The counter is the index for
     /// independent samples and the reversed index within the half for Sobol samples.
     pub fn counter(&self, settings: &RenderSettings) -> (u32, u32) {
-        let half_count = settings.half_count() as u32;
         match settings.sampler {
-            SamplerKind::Independent => (self.first * half_count + self.half, half_count),
+            SamplerKind::Independent => (self.first * HALVES as u32 + self.half, HALVES as u32),
             SamplerKind::Sobol => (self.first.reverse_bits(), ((1_u64 << 32) / u64::from(self.count)) as u32),
         }
     }

@@ -64,12 +64,12 @@ impl Candidate {
     }
 
     /// An empty film; the C program's has a single half, so no error estimate.
-    pub fn new_film(&self, job: &RenderJob) -> Film {
-        if self.is_baseline() {
-            Film::new(job.settings().width, job.settings().height, 1)
-        } else {
-            job.new_film()
-        }
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    pub fn new_film(&self, job: &RenderJob) -> Result<Film> {
+        let film = job.new_film();
+        Ok(if self.is_baseline() { film.try_blank()? } else { film })
     }
 
     /// Adds samples to a film. Fails if `cancel` is set, too. A failed renderer is replaced for the next picture.
@@ -91,7 +91,7 @@ impl Candidate {
     /// Traces a new film.
     pub fn trace(&mut self, job: &RenderJob, samples: u64, cancel: &AtomicBool) -> Result<Traced> {
         self.start()?;
-        let mut film = self.new_film(job);
+        let mut film = self.new_film(job)?;
         let begin = Instant::now();
         let stats = self.add(job, 0..samples, &mut film, cancel)?;
         let seconds = begin.elapsed().as_secs_f64();

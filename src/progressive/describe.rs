@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn the_film_says_how_many_samples_it_has() {
         let recipe = Recipe::builtin("three-spheres").expect("built in");
-        let mut film = Film::new(1, 1, 1);
+        let mut film = Film::new(1, 1);
         film.record(0..10, 0).expect("empty");
         // The status can be that of a later pass.
         let status = Status { samples_per_pixel: 12, ..Status::default() };
@@ -133,7 +133,7 @@ mod tests {
         let info = |name: &'static str, lanes| BackendInfo { name, device: "x".into(), lanes, threads: 1 };
         let part =
             |name, lanes, samples_per_pixel| Contribution { backend: info(name, lanes), samples_per_pixel };
-        let mut film = Film::new(1, 1, 1);
+        let mut film = Film::new(1, 1);
         film.record(0..10, 0).expect("empty");
         let text = |contributions: &[Contribution]| {
             let status = Status {

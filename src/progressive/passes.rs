@@ -19,15 +19,10 @@ pub struct PassSizer {
 const LENGTH_LIMIT: u64 = 1 << 16;
 
 impl PassSizer {
-    /// Starts with short passes. With two halves, each pass gives both halves the same number of samples.
-    pub fn new(half_count: usize) -> Self {
-        let smallest = half_count as u64;
-        PassSizer { smallest, length: smallest, seconds_per_sample: None }
-    }
-
-    /// Begins with a pass of this many samples, a power of two, or of as many as each half needs.
-    pub fn begin_with(self, samples: u64) -> Self {
-        PassSizer { length: samples.clamp(self.smallest, LENGTH_LIMIT), ..self }
+    /// Passes have at least `smallest` samples, and the first has `length`, both powers of two. If `smallest` is the
+    /// number of halves, each pass gives both the same number of samples.
+    pub fn new(smallest: u64, length: u64) -> Self {
+        PassSizer { smallest, length: length.clamp(smallest, LENGTH_LIMIT), seconds_per_sample: None }
     }
 
     /// Begins with a pass of about `target` at an estimated time per sample.
@@ -101,8 +96,8 @@ mod tests {
     const FAST: Duration = Duration::from_millis(1);
     const TARGET: Duration = Duration::from_secs(1);
 
-    fn passes(half_count: usize, held: SampleRanges, planned: Range<u64>) -> Vec<Range<u64>> {
-        let (mut sizer, mut held, mut passes) = (PassSizer::new(half_count), held, Vec::new());
+    fn passes(smallest: u64, held: SampleRanges, planned: Range<u64>) -> Vec<Range<u64>> {
+        let (mut sizer, mut held, mut passes) = (PassSizer::new(smallest, 1), held, Vec::new());
         while let Some(pass) = sizer.next(&held, planned.clone(), None) {
             held.insert(pass.clone()).unwrap();
             sizer.measured(pass.end - pass.start, FAST, TARGET);
@@ -119,12 +114,12 @@ mod tests {
 
     #[test]
     fn passes_are_aligned_fill_every_gap_and_never_overlap() {
-        for half_count in [1, 2] {
+        for smallest in [1, 2] {
             for planned in [0..1, 0..77, 3..17, 64..1000, 5..6] {
                 let mut held = SampleRanges::default();
                 held.insert(6..9).unwrap();
                 held.insert(100..164).unwrap();
-                for pass in passes(half_count, held.clone(), planned.clone()) {
+                for pass in passes(smallest, held.clone(), planned.clone()) {
                     let length = pass.end - pass.start;
                     assert!(length.is_power_of_two() && pass.start % length == 0, "{pass:?}");
                     held.insert(pass).unwrap();
@@ -136,7 +131,7 @@ mod tests {
 
     #[test]
     fn slow_passes_stay_small_and_fit_the_time_left() {
-        let mut sizer = PassSizer::new(2);
+        let mut sizer = PassSizer::new(2, 2);
         let held = SampleRanges::default();
         sizer.measured(2, Duration::from_secs(20), TARGET);
         assert_eq!(sizer.next(&held, 0..100, None), Some(0..2));
@@ -147,7 +142,7 @@ mod tests {
 
     #[test]
     fn shortest_pass_gives_each_half_a_sample() {
-        let mut sizer = PassSizer::new(2);
+        let mut sizer = PassSizer::new(2, 2);
         sizer.measured(2, Duration::from_secs(20), TARGET);
         let in_time =
             |seconds| sizer.next(&SampleRanges::default(), 0..100, Some(Duration::from_secs(seconds)));
@@ -157,7 +152,7 @@ mod tests {
 
     #[test]
     fn alignment_does_not_shorten_later_passes() {
-        let (mut sizer, none) = (PassSizer::new(1).begin_with(64), SampleRanges::default());
+        let (mut sizer, none) = (PassSizer::new(1, 64), SampleRanges::default());
         assert_eq!(sizer.next(&none, 4..1000, None), Some(4..8));
         sizer.measured(4, FAST, TARGET);
         assert_eq!(sizer.next(&none, 64..1000, None), Some(64..128));
@@ -168,7 +163,7 @@ mod tests {
 
     #[test]
     fn passes_have_at_most_65536_samples() {
-        let begun = PassSizer::new(2).begin_with(1 << 20);
+        let begun = PassSizer::new(2, 1 << 20);
         let length = |sizer: &PassSizer| {
             let pass = sizer.next(&SampleRanges::default(), 0..1 << 30, None).unwrap();
             pass.end - pass.start
@@ -183,7 +178,7 @@ mod tests {
 
     #[test]
     fn restart_forgets_the_speed() {
-        let (mut sizer, none) = (PassSizer::new(2), SampleRanges::default());
+        let (mut sizer, none) = (PassSizer::new(2, 2), SampleRanges::default());
         let in_a_second = |sizer: &PassSizer| sizer.next(&none, 0..100, Some(TARGET));
         sizer.measured(2, 10 * TARGET, TARGET);
         assert_eq!(in_a_second(&sizer), None);

@@ -14,7 +14,7 @@ pub struct Stop {
     pub samples: Option<u64>,
     /// Time limit in seconds, including preparation but not pauses. At least one pass is always rendered.
     pub seconds: Option<f64>,
-    /// Target RMSE in linear radiance, as estimated from the halves. Needs a film with two halves.
+    /// Target RMSE in linear radiance, as estimated from the halves.
     pub noise: Option<f64>,
     /// The picture whose error the target limits.
     pub noise_of: NoiseOf,

@@ -202,7 +202,7 @@ mod tests {
             ..Status::default()
         };
         let film = |samples: u64| {
-            let mut film = Film::new(1, 1, 1);
+            let mut film = Film::new(1, 1);
             film.record(0..samples, 0).unwrap();
             film
         };

@@ -16,7 +16,7 @@ pub enum View {
     Exposed(f64, Option<usize>),
     /// Luminance as a heat map from one power of two to another.
     Luminance([f64; 2]),
-    /// The standard error of each pixel's mean, estimated from the halves; black with only one half.
+    /// The standard error of each pixel's mean, estimated from the halves.
     StandardError,
     /// The difference of each pixel from a reference. A film of another size is shown as a picture.
     Difference(Arc<ReferenceMeans>),
@@ -136,7 +136,7 @@ mod tests {
     use crate::film::PixelSum;
 
     fn film(a: u64, b: u64) -> Film {
-        let mut film = Film::new(1, 1, 2);
+        let mut film = Film::new(1, 1);
         for (half, k) in [a, b].into_iter().enumerate() {
             film.halves_mut()[half][0] = PixelSum([k << 24; 3]);
         }
@@ -147,7 +147,7 @@ mod tests {
     #[test]
     fn halves_are_weighted_by_their_counts() {
         // Two samples of 3 in one half, one of 0 in the other: (3 - 0)^2 2 1 / 3^2.
-        let mut film = Film::new(1, 1, 2);
+        let mut film = Film::new(1, 1);
         film.halves_mut()[0][0] = PixelSum([6 << 24; 3]);
         film.record(0..3, 0).unwrap();
         let error = standard_error(&film, 0).unwrap();
@@ -156,7 +156,7 @@ mod tests {
         film.record(3..4, 0).unwrap();
         let error = standard_error(&film, 0).unwrap();
         assert!((film.error().unwrap().rmse - error[0]).abs() < 1e-12);
-        assert_eq!(standard_error(&Film::new(1, 1, 2), 0), None);
+        assert_eq!(standard_error(&Film::new(1, 1), 0), None);
     }
 
     #[test]
@@ -172,7 +172,7 @@ mod tests {
         assert_eq!(off([0.01, -0.01, 0.01]), middle);
         // All of the difference in one channel: the root mean square is the same.
         assert_eq!(off([0.0, 0.01 * 3.0_f32.sqrt(), 0.0]), middle);
-        let mut noisy = Film::new(1, 1, 2);
+        let mut noisy = Film::new(1, 1);
         for (half, k) in [98, 100].into_iter().enumerate() {
             noisy.halves_mut()[half][0] = PixelSum([(k << 24) / 100; 3]);
         }
@@ -197,7 +197,7 @@ mod tests {
 
     #[test]
     fn brightness_is_shown_in_stops() {
-        let mut film = Film::new(1, 1, 1);
+        let mut film = Film::new(1, 1);
         // Luminance: 0.7152 / 4 + 0.0722 / 4 + 0.2126 / 4 = 1/4, the middle of the scale.
         film.halves_mut()[0][0] = PixelSum([1 << 22; 3]);
         film.record(0..1, 0).unwrap();

@@ -139,7 +139,7 @@ impl Worker {
             self.backend = Some((choice.clone(), renderer));
         }
         let settings = job.settings();
-        let new_film = || Film::try_new(settings.width, settings.height, settings.half_count());
+        let new_film = || Film::try_new(settings.width, settings.height);
         match film.map_or_else(new_film, Ok) {
             Ok(film) => {
                 let render = Render::new(run, job, choice, plan, film, cancel);

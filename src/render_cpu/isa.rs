@@ -57,12 +57,15 @@ impl Isa {
         Isa::ALL.into_iter().filter(is_available).collect()
     }
 
-    /// Lane counts that have kernels at this level: 1, those that fit a register, and twice those.
+    /// Lane counts that have kernels at this level: 1 and those of a register. Whether two registers are faster depends on
+    /// the processor with NEON.
     pub fn lane_counts(self) -> &'static [usize] {
         match self {
             Isa::Portable => &[1],
-            Isa::Sse42 | Isa::Neon | Isa::Simd128 => &[1, 4, 8],
-            Isa::Avx2 | Isa::Avx512 => &[1, 4, 8, 16],
+            Isa::Sse42 | Isa::Simd128 => &[1, 4],
+            Isa::Neon => &[1, 4, 8],
+            Isa::Avx2 => &[1, 8],
+            Isa::Avx512 => &[1, 16],
         }
     }
 

@@ -23,5 +23,5 @@ pub use crate::kernel::path_record::{PathRecord, RecordedHit, RecordedRay};
 pub use isa::Isa;
 pub use options::{CpuError, CpuOptions};
 pub use priority::give_way;
-pub use record::{PathRecorder, record_path};
+pub use record::PathRecorder;
 pub use renderer::CpuRenderer;

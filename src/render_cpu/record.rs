@@ -1,24 +1,14 @@
-//! Records one path ray by ray, using the rendering code itself. The pixel inspector shows these records, and a
-//! comparison of two backends uses them to find where they differ.
+//! Records one path ray by ray, using the rendering code itself.
 
 use super::Isa;
 use super::broadcast::BroadcastScene;
-use super::lanes::{Reference, Scalar};
+use super::lanes::Scalar;
 use super::path::record;
 use crate::job::render::RenderJob;
 use crate::kernel::path_record::PathRecord;
 use crate::prepared::PreparedScene;
 use fearless_simd::{Level, Simd};
 use std::sync::atomic::AtomicBool;
-
-/// Records sample `index` of pixel (`x`, `y`), which must be inside the picture, as `isa` traces it, or in `f64` if
-/// `isa` is `None`.
-pub fn record_path(job: &RenderJob, pixel: [u32; 2], index: u64, isa: Option<Isa>) -> PathRecord {
-    match isa {
-        Some(isa) => PathRecorder::new(job, isa, None).record(pixel, index),
-        None => record(Reference, &BroadcastScene::new(PreparedScene::new(job)), pixel, index),
-    }
-}
 
 /// Records many paths of one job, in turn or from several threads.
 pub struct PathRecorder {
@@ -90,17 +80,15 @@ mod tests {
     fn records_match_the_rendered_paths() {
         for scene in ["three-spheres", "book"] {
             let job = small_job(scene);
-            for isa in Isa::available().into_iter().map(Some).chain([None]) {
-                let mut renderer = match isa {
-                    Some(isa) => CpuRenderer::new(CpuOptions { isa: Some(isa), ..CpuOptions::default() }),
-                    None => CpuRenderer::reference(Some(1)),
-                }
-                .expect("available");
+            for isa in Isa::available() {
+                let options = CpuOptions { isa: Some(isa), ..CpuOptions::default() };
+                let mut renderer = CpuRenderer::new(options).expect("available");
+                let recorder = PathRecorder::new(&job, isa, None);
                 let mut film = job.new_film();
                 renderer.accumulate(&job, 5..6, &mut film, &AtomicBool::new(false)).expect("traced");
                 for y in 0..7 {
                     for x in 0..12 {
-                        let record = record_path(&job, [x, y], 5, isa);
+                        let record = recorder.record([x, y], 5);
                         let pixel = film.pixel_sum((y * 12 + x) as usize).radiance();
                         assert_eq!(record.radiance, pixel, "{scene} {isa:?} pixel {x},{y}");
                     }

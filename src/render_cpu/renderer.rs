@@ -9,7 +9,7 @@ use super::priority::give_way;
 use super::rebuild::Rebuild;
 use super::tiles::tile_side;
 use super::work::TileStats;
-use crate::film::Film;
+use crate::film::{Film, HALVES};
 use crate::job::render::{
     BackendInfo, Control, Diagnostics, KernelInfo, Outcome, RenderError, RenderJob, Renderer, Stats,
 };
@@ -139,13 +139,12 @@ impl Renderer for CpuRenderer {
 
     fn estimate_sample_time(&mut self, one_in: usize, cancel: &AtomicBool) -> Option<Duration> {
         let settings = *self.job.as_ref()?.settings();
-        let mut film = Film::try_new(settings.width, settings.height, settings.half_count()).ok()?;
+        let mut film = Film::try_new(settings.width, settings.height).ok()?;
         let side = tile_side(film.width(), film.height(), self.threads.count());
-        let count = film.halves().len() as u64;
         let stop = StopRequest::when(cancel);
         let pass =
-            Pass { side, range: &(0..count), cancel, stop: &stop, purpose: Purpose::Estimate { one_in } };
-        Some(self.pass_tracer()?.estimate_time(pass, &mut film)? / count as u32)
+            Pass { side, range: &(0..HALVES), cancel, stop: &stop, purpose: Purpose::Estimate { one_in } };
+        Some(self.pass_tracer()?.estimate_time(pass, &mut film)? / HALVES as u32)
     }
 
     fn advance(

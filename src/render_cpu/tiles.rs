@@ -18,7 +18,7 @@ pub struct Tile<'film> {
     pub corner: [u32; 2],
     /// Number of rows in one half.
     pub height: u32,
-    /// The rows of all halves, one half after the other.
+    /// The rows of both halves, one half after the other.
     pub rows: TileRows<'film>,
 }
 
@@ -43,14 +43,14 @@ pub fn tile_side(width: u32, height: u32, threads: usize) -> u32 {
 /// Splits the halves of a film `width` pixels wide into tiles, row by row.
 pub fn tiles(halves: &mut [Vec<PixelSum>], width: u32, side: u32) -> Vec<Tile<'_>> {
     let mut tiles: Vec<Tile> = Vec::new();
-    let (across, half_count) = (width.div_ceil(side) as usize, halves.len());
+    let across = width.div_ceil(side) as usize;
     for (half_index, half) in halves.iter_mut().enumerate() {
         for (y, row) in half.chunks_mut(width as usize).enumerate() {
             let y = y as u32;
             for (column, part) in row.chunks_mut(side as usize).enumerate() {
                 let index = (y / side) as usize * across + column;
                 if index == tiles.len() {
-                    let rows = Vec::with_capacity(half_count * side as usize);
+                    let rows = Vec::with_capacity(2 * side as usize);
                     tiles.push(Tile { corner: [column as u32 * side, y], height: 0, rows });
                 }
                 let tile = &mut tiles[index];

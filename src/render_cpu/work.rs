@@ -48,7 +48,7 @@ pub struct RefillBlock {
 impl RefillBlock {
     /// Splits the sample range `range` into blocks.
     pub fn of_range(range: std::ops::Range<u64>, settings: &RenderSettings, limit: u32) -> Vec<RefillBlock> {
-        SampleBlock::split(range, settings.half_count() as u32, limit)
+        SampleBlock::split(range, limit)
             .into_iter()
             .map(|block| {
                 let (counter, step) = block.counter(settings);
@@ -302,7 +302,7 @@ mod tests {
 
     #[test]
     fn lanes_wait_where_blocks_are_short() {
-        let settings = RenderSettings { estimate_error: true, ..RenderSettings::default() };
+        let settings = RenderSettings::default();
         let order = RefillOrder::new(1, 1);
         let pause = |range: std::ops::Range<u64>| {
             let blocks = RefillBlock::of_range(range, &settings, 1 << 10);

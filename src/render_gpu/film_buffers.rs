@@ -6,7 +6,7 @@ use super::failed;
 use super::layout::{GpuBlock, GpuCounters, GpuDispatch, tile_size};
 use super::readback::Staging;
 use super::schedule::BLOCK_LIMIT;
-use crate::film::{Film, PixelSum, SampleRanges};
+use crate::film::{Film, HALVES, PixelSum, SampleRanges};
 use crate::job::render::{RenderError, RenderSettings, Stats};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -45,7 +45,7 @@ struct Readback {
 
 /// The buffers of a film, and which samples they contain.
 pub struct FilmBuffers {
-    shape: (u32, u32, usize, u64),
+    shape: (u32, u32, u64),
     /// The slabs, from the top of the picture down.
     pub slabs: Vec<Slab>,
     /// Parameters of a dispatch: a [`GpuDispatch`].
@@ -64,8 +64,8 @@ pub struct FilmBuffers {
     pub readbacks_took: Duration,
 }
 
-fn shape(settings: &RenderSettings, limit: u64) -> (u32, u32, usize, u64) {
-    (settings.width, settings.height, settings.half_count(), limit)
+fn shape(settings: &RenderSettings, limit: u64) -> (u32, u32, u64) {
+    (settings.width, settings.height, limit)
 }
 
 impl FilmBuffers {
@@ -75,7 +75,7 @@ impl FilmBuffers {
     /// If not even one row of tiles fits, or the device runs out of memory.
     pub fn new(gpu: &Gpu, settings: &RenderSettings, limit: u64) -> Result<Self, String> {
         let RenderSettings { width, height, .. } = *settings;
-        let row_size = u64::from(width) * settings.half_count() as u64 * PIXEL_SIZE;
+        let row_size = u64::from(width) * HALVES * PIXEL_SIZE;
         let tile_height = tile_size(width, height)[1];
         let fitting = (limit / row_size).min(u64::from(height)) as u32;
         // All slabs but the last consist of whole tiles.
@@ -264,10 +264,9 @@ impl FilmBuffers {
 /// Adds a slab's sums, half by half, to the film, starting at row `first_row`.
 fn add_rows(film: &mut Film, first_row: u32, sums: &[u64]) {
     let start = first_row as usize * film.width() as usize;
-    let halves = film.halves_mut();
     // Buffer sizes are rounded up to 16 bytes.
-    let words = sums.len() / halves.len() / PIXEL_WORDS * PIXEL_WORDS;
-    for (half, sums) in halves.iter_mut().zip(sums.chunks_exact(words)) {
+    let words = sums.len() / HALVES as usize / PIXEL_WORDS * PIXEL_WORDS;
+    for (half, sums) in film.halves_mut().iter_mut().zip(sums.chunks_exact(words)) {
         let pixels = &mut half[start..start + words / PIXEL_WORDS];
         let parts = pixels.par_chunks_mut(PIXELS_AT_ONCE);
         parts.zip(sums.par_chunks(PIXELS_AT_ONCE * PIXEL_WORDS)).for_each(|(pixels, sums)| {
@@ -366,13 +365,12 @@ mod tests {
     #[test]
     fn sums_are_added_to_their_rows_half_by_half() {
         // The last has more pixels than a thread takes at a time.
-        for (width, height, halves, first_row, rows) in [(3, 4, 2, 1, 2), (1, 2, 1, 1, 1), (5000, 1, 1, 0, 1)]
-        {
-            let mut film = Film::new(width, height, halves);
+        for (width, height, first_row, rows) in [(3, 4, 1, 2), (1, 2, 1, 1), (5000, 1, 0, 1)] {
+            let mut film = Film::new(width, height);
             film.halves_mut().iter_mut().flatten().for_each(|sum| *sum = PixelSum([1000; 3]));
             let (width, of_half) = (width as usize, (width * rows) as usize);
             // Words beyond the last pixel are left out.
-            let sums: Vec<u64> = (0..(3 * of_half * halves) as u64 + 1).collect();
+            let sums: Vec<u64> = (0..(3 * of_half * 2) as u64 + 1).collect();
             add_rows(&mut film, first_row, &sums);
             for (number, half) in film.halves().iter().enumerate() {
                 for (pixel, sum) in half.iter().enumerate() {

@@ -26,9 +26,7 @@ pub struct Kernel {
     pub compile_time: Duration,
 }
 
-type Key = (EntryPoint, Features);
-
-type Modules = Arc<Mutex<HashMap<EntryPoint, wgpu::ShaderModule>>>;
+type Module = Arc<Mutex<Option<wgpu::ShaderModule>>>;
 
 /// A kernel in the cache.
 pub enum Slot {
@@ -39,15 +37,15 @@ pub enum Slot {
 /// All kernels of a device, finished or being compiled.
 #[derive(Default)]
 pub struct Kernels {
-    modules: Modules,
-    slots: HashMap<Key, Slot>,
+    module: Module,
+    slots: HashMap<Features, Slot>,
 }
 
 impl Kernels {
     /// Starts compiling a kernel unless that has been done, without waiting for it.
-    pub fn begin(&mut self, gpu: &Gpu, key: Key) -> &mut Slot {
-        let modules = &self.modules;
-        self.slots.entry(key).or_insert_with(|| start(gpu.clone(), key, Arc::clone(modules)))
+    pub fn begin(&mut self, gpu: &Gpu, features: Features) -> &mut Slot {
+        let module = &self.module;
+        self.slots.entry(features).or_insert_with(|| start(gpu.clone(), features, Arc::clone(module)))
     }
 
     /// Returns a kernel, compiling it on first use.
@@ -55,8 +53,8 @@ impl Kernels {
     /// # Errors
     /// [`RenderError::Backend`] with the device's error. [`RenderError::Cancelled`] if the kernel is no longer wanted:
     /// it continues to compile, and the finished kernel stays in the cache.
-    pub fn get(&mut self, gpu: &Gpu, key: Key, cancel: &AtomicBool) -> Result<Kernel, RenderError> {
-        self.begin(gpu, key).wait(&gpu.adapter, cancel)
+    pub fn get(&mut self, gpu: &Gpu, features: Features, cancel: &AtomicBool) -> Result<Kernel, RenderError> {
+        self.begin(gpu, features).wait(&gpu.adapter, cancel)
     }
 }
 
@@ -88,39 +86,35 @@ impl Slot {
 }
 
 /// Compiles on a background thread, or at once if no thread can be started.
-fn start(gpu: Gpu, key: Key, modules: Modules) -> Slot {
+fn start(gpu: Gpu, features: Features, module: Module) -> Slot {
     let (sender, kernel) = mpsc::channel();
     let compile = {
-        let (gpu, modules) = (gpu.clone(), Arc::clone(&modules));
+        let (gpu, module) = (gpu.clone(), Arc::clone(&module));
         // If the renderer has been dropped, there is no receiver.
-        move || drop(sender.send(compiled(&gpu, key, &modules)))
+        move || drop(sender.send(compiled(&gpu, features, &module)))
     };
     match std::thread::Builder::new().name("compile".to_owned()).spawn(compile) {
         Ok(_) => Slot::Compiling(kernel, Instant::now()),
-        Err(_) => Slot::Done(compiled(&gpu, key, &modules)),
+        Err(_) => Slot::Done(compiled(&gpu, features, &module)),
     }
 }
 
-fn compiled(gpu: &Gpu, (entry_point, features): Key, modules: &Modules) -> Result<Kernel, String> {
+fn compiled(gpu: &Gpu, features: Features, module: &Module) -> Result<Kernel, String> {
     let start = Instant::now();
-    let label = Some(entry_point.name());
+    let label = Some(EntryPoint::PathTrace.name());
     let module = {
-        let mut modules = modules.lock().unwrap_or_else(PoisonError::into_inner);
-        match modules.get(&entry_point) {
+        let mut module = module.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*module {
             Some(module) => module.clone(),
             None => {
-                let source = wgpu::ShaderSource::Wgsl(source(entry_point).into());
+                let source = wgpu::ShaderSource::Wgsl(source(EntryPoint::PathTrace).into());
                 let described = wgpu::ShaderModuleDescriptor { label, source };
-                let module = gpu.guarded(|| module_of(gpu, described))?;
-                modules.insert(entry_point, module.clone());
-                module
+                module.insert(gpu.guarded(|| module_of(gpu, described))?).clone()
             }
         }
     };
     let overrides = features.overrides();
-    let mut constants: Vec<(&str, f64)> =
-        overrides.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-    constants.push(("RECORD", f64::from(u8::from(entry_point == EntryPoint::PathRecord))));
+    let constants: Vec<(&str, f64)> = overrides.iter().map(|(name, value)| (name.as_str(), *value)).collect();
     let pipeline = gpu.guarded(|| {
         gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label,

@@ -5,7 +5,6 @@ use super::kernel::Kernel;
 use super::layout::{GpuJob, WORKGROUP_SIZE, tile_size};
 use super::scene::SceneData;
 use super::scene::{ITERATION_LIMIT, iterations_over_lists};
-use super::shader_source::EntryPoint;
 use super::{GpuRenderer, failed};
 use crate::job::render::{RenderError, RenderJob};
 use crate::kernel::{Features, RECORD_COLUMNS, words_of};
@@ -25,8 +24,6 @@ pub(super) struct Loaded {
 /// A scene in buffers, prepared for a camera.
 pub(super) struct SceneOnDevice {
     pub(super) prepared: PreparedScene<f32>,
-    /// The index in the scene of each sphere, by number.
-    pub(super) scene_index: Vec<u32>,
     /// Number of nodes in the hierarchy.
     node_count: u32,
     job_buffer: wgpu::Buffer,
@@ -78,11 +75,11 @@ impl GpuRenderer {
         };
         let features = self.features(&scene.prepared);
         self.check_lists(&features, &scene.prepared).map_err(failed)?;
-        self.kernels.begin(&self.gpu, (EntryPoint::PathTrace, features));
+        self.kernels.begin(&self.gpu, features);
         self.messages.extend(scene.prepared.warning().cloned());
         let film = self.film_buffers(job, old_film).map_err(failed)?;
         self.reserve_suspended(job).map_err(failed)?;
-        let kernel = self.kernels.get(&self.gpu, (EntryPoint::PathTrace, features), cancel)?;
+        let kernel = self.kernels.get(&self.gpu, features, cancel)?;
         self.gpu.faults.check().map_err(failed)?;
         if self.dispatches.is_new(&features) {
             self.gpu.expect_compiling();
@@ -113,7 +110,7 @@ impl GpuRenderer {
         let made = PreparedScene::<f32>::for_gpu(cancel, job, |needed| {
             let features = if specialise { *needed } else { needed.generalised() };
             // With a hierarchy, paths may be suspended.
-            kernels.begin(gpu, (EntryPoint::PathTrace, Features { suspends: true, ..features }));
+            kernels.begin(gpu, Features { suspends: true, ..features });
         });
         let mut prepared = made.ok_or(RenderError::Cancelled)?;
         let data = SceneData::new(&mut prepared);
@@ -153,7 +150,7 @@ impl GpuRenderer {
     }
 
     /// Size limit of a film in one buffer, in bytes.
-    pub(super) fn film_limit(&self) -> u64 {
+    fn film_limit(&self) -> u64 {
         let limit = self.binding_limit();
         self.options.film_limit.map_or(limit, |wanted| wanted.min(limit))
     }
@@ -184,7 +181,6 @@ impl GpuRenderer {
             group,
             anchored_buffer,
             rows_buffer,
-            scene_index: prepared.scene_index.clone(),
             node_count: scene.node_count,
             job_buffer,
             prepared,

@@ -13,7 +13,6 @@ pub mod layout;
 mod loaded;
 mod options;
 mod readback;
-mod record;
 mod scene;
 mod schedule;
 pub mod shader_source;

@@ -113,7 +113,7 @@ pub struct Blocks {
 impl Blocks {
     /// All samples of `range`; `limit` is the most that a 32-bit sum can hold.
     pub fn of_range(range: Range<u64>, settings: &RenderSettings, limit: u32) -> Self {
-        let left = SampleBlock::split(range, settings.half_count() as u32, limit).into();
+        let left = SampleBlock::split(range, limit).into();
         Blocks { settings: *settings, left }
     }
 
@@ -154,10 +154,6 @@ impl Blocks {
 mod tests {
     use super::*;
 
-    fn settings(estimate_error: bool) -> RenderSettings {
-        RenderSettings { width: 1, height: 1, max_depth: 1, estimate_error, ..RenderSettings::default() }
-    }
-
     /// Reversed sample indices within a half.
     fn indices(blocks: &[GpuBlock]) -> Vec<(u32, u32)> {
         let mut all = Vec::new();
@@ -172,24 +168,21 @@ mod tests {
 
     #[test]
     fn parts_are_the_whole_once() {
-        for halves in [false, true] {
-            for piece in [1, 2, 3, 5, 16, 100, 1000] {
-                let mut blocks = Blocks::of_range(37..1111, &settings(halves), 128);
-                let mut all = Vec::new();
-                loop {
-                    let (taken, total) = blocks.take(piece);
-                    if taken.is_empty() {
-                        break;
-                    }
-                    assert!(total <= piece);
-                    all.extend(indices(&taken));
+        for piece in [1, 2, 3, 5, 16, 100, 1000] {
+            let mut blocks = Blocks::of_range(37..1111, &RenderSettings::default(), 128);
+            let mut all = Vec::new();
+            loop {
+                let (taken, total) = blocks.take(piece);
+                if taken.is_empty() {
+                    break;
                 }
-                all.sort_unstable();
-                let half_count = if halves { 2 } else { 1 };
-                let mut expected: Vec<_> = (37..1111_u32).map(|i| (i % half_count, i / half_count)).collect();
-                expected.sort_unstable();
-                assert_eq!(all, expected, "{halves} {piece}");
+                assert!(total <= piece);
+                all.extend(indices(&taken));
             }
+            all.sort_unstable();
+            let mut expected: Vec<_> = (37..1111_u32).map(|i| (i % 2, i / 2)).collect();
+            expected.sort_unstable();
+            assert_eq!(all, expected, "{piece}");
         }
     }
 
@@ -251,12 +244,12 @@ mod tests {
 
     #[test]
     fn blocks_are_taken_whole_where_they_fit() {
-        let mut blocks = Blocks::of_range(0..64, &settings(false), 32);
+        let mut blocks = Blocks::of_range(0..64, &RenderSettings::default(), 32);
         let mut taken = |most| blocks.take(most).0.iter().map(|block| block.count).collect::<Vec<u32>>();
         // Of a block that is too large, a power of two is taken; the rest is left in parts that double.
         assert_eq!([taken(7), taken(4), taken(23), taken(0)], [[4], [4], [8], [1]]);
         assert_eq!([taken(1000), taken(1000)], [vec![1, 2, 4, 8, 32], vec![]]);
-        let mut many = Blocks::of_range(0..2 * BLOCK_LIMIT as u64, &settings(false), 1);
+        let mut many = Blocks::of_range(0..2 * BLOCK_LIMIT as u64, &RenderSettings::default(), 1);
         assert_eq!([u64::MAX, 10].map(|most| many.take(most).0.len()), [BLOCK_LIMIT, 10]);
     }
 }

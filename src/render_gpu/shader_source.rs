@@ -9,20 +9,17 @@ pub enum EntryPoint {
     PathTrace,
     /// Converts the film to a picture, for the page.
     Resolve,
-    /// Traces one sample of one pixel and records it.
-    PathRecord,
 }
 
 impl EntryPoint {
     /// All entry points.
-    pub const ALL: [EntryPoint; 3] = [EntryPoint::PathTrace, EntryPoint::Resolve, EntryPoint::PathRecord];
+    pub const ALL: [EntryPoint; 2] = [EntryPoint::PathTrace, EntryPoint::Resolve];
 
     /// The entry point's name in the shader.
     pub fn name(self) -> &'static str {
         match self {
             EntryPoint::PathTrace => "path_trace",
             EntryPoint::Resolve => "resolve",
-            EntryPoint::PathRecord => "path_record",
         }
     }
 
@@ -31,13 +28,12 @@ impl EntryPoint {
         match self {
             EntryPoint::PathTrace => include_str!("../../shaders/path_trace.wgsl"),
             EntryPoint::Resolve => include_str!("../../shaders/resolve.wgsl"),
-            EntryPoint::PathRecord => include_str!("../../shaders/path_record.wgsl"),
         }
     }
 }
 
 /// The files with functions and bindings that all entry points share.
-const SHARED: [&str; 11] = [
+const SHARED: [&str; 10] = [
     include_str!("../../shaders/lanes.wgsl"),
     include_str!("../../shaders/rng.wgsl"),
     include_str!("../../shaders/camera.wgsl"),
@@ -48,17 +44,11 @@ const SHARED: [&str; 11] = [
     include_str!("../../shaders/path.wgsl"),
     include_str!("../../shaders/rules.wgsl"),
     include_str!("../../shaders/suspend.wgsl"),
-    include_str!("../../shaders/record.wgsl"),
 ];
-
-/// The declarations from Rust, as WGSL.
-pub fn prelude() -> String {
-    kernel::wgsl() + "\noverride RECORD: bool = false;\n"
-}
 
 /// The text that all entry points begin with: the declarations from Rust, functions and bindings.
 pub fn shared() -> String {
-    SHARED.into_iter().fold(prelude(), |text, part| text + "\n" + part) + "\n"
+    SHARED.into_iter().fold(kernel::wgsl(), |text, part| text + "\n" + part) + "\n"
 }
 
 /// The complete text of a shader.

@@ -24,7 +24,7 @@ pub const TERMINATED: u8 = 143;
 
 /// The exit codes as `--help` explains them.
 pub const EXIT_CODES: &str = "\
-Exit codes: 0 success; 1 failure during the run (compare and diff: the inputs differ; check: a mistake; merge: a part is missing); 2 the request cannot be carried \
+Exit codes: 0 success; 1 failure during the run (compare: the inputs differ; check: a mistake; merge: a part is missing); 2 the request cannot be carried \
 out, nothing was started (compare: it cannot tell); 3 the render failed, but what it had rendered is saved; 130 Ctrl-C, 143 SIGTERM, 129 \
 SIGHUP: what had been rendered is saved";
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 use weekender::backends::explain::{Event, Lobe, Step, steps};
 use weekender::job::recipe::Recipe;
 use weekender::job::render::RenderJob;
-use weekender::render_cpu::{PathRecord, record_path};
+use weekender::render_cpu::{Isa, PathRecord, PathRecorder};
 use weekender::stages::Stage;
 
 fn job(recipe: Recipe) -> RenderJob {
@@ -13,12 +13,13 @@ fn job(recipe: Recipe) -> RenderJob {
     recipe.job().expect("valid")
 }
 
-/// Calls `check` for the paths of a few samples of every pixel, as the `f64` reference traces them.
+/// Calls `check` for the paths of a few samples of every pixel.
 fn for_paths(job: &RenderJob, samples: u64, mut check: impl FnMut(&PathRecord, &[Step])) {
+    let recorder = PathRecorder::new(job, Isa::Portable, None);
     for y in 0..14 {
         for x in 0..24 {
             for index in 0..samples {
-                let record = record_path(job, [x, y], index, None);
+                let record = recorder.record([x, y], index);
                 let steps = steps(job, [x, y], index, &record);
                 assert_eq!(steps.len(), record.rays.len());
                 check(&record, &steps);

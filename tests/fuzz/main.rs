@@ -58,7 +58,7 @@ const SCENE_WORDS: &str = "[camera] [render] [sky] [rules] [[spheres]] [[keyfram
     1979-05-27T07:32:00Z \\u0000 \\U0010ffff";
 
 const FLAG_WORDS: &str = "--batch --scene --stage --size --samples --depth --seed --look-from --vfov --simd --isa --threads \
-    --out --resume --json --time-limit --noise-target --sample-range compare merge bench diff report --help -- = , .. x";
+    --out --resume --json --time-limit --noise-target --sample-range compare merge bench report --help -- = , .. x";
 
 /// Numbers that often cause errors.
 const NUMBERS: &str = "0 -0 -1 1 1e308 -1e308 1e-320 1e400 nan inf -inf 0.5 4294967296 4294967295 9223372036854775807 \

@@ -85,7 +85,7 @@ impl Renderer for Breaking {
 
 fn job() -> RenderJob {
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
-    job_of(&scene, camera, [64, 36], 8, SamplerKind::Sobol, true)
+    job_of(&scene, camera, [64, 36], 8, SamplerKind::Sobol)
 }
 
 #[test]

@@ -14,9 +14,9 @@ use weekender::scene::builtin::{BOOK_CAMERA, BuiltinScene, field};
 use weekender::scene::{Camera, Material, Scene, Sky, Sphere};
 use weekender::stages::{Stage, Transfer};
 
-fn three_spheres(size: [u32; 2], max_depth: u32, estimate_error: bool) -> RenderJob {
+fn three_spheres(size: [u32; 2], max_depth: u32) -> RenderJob {
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
-    job_of(&scene, camera, size, max_depth, SamplerKind::Sobol, estimate_error)
+    job_of(&scene, camera, size, max_depth, SamplerKind::Sobol)
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn white_furnace_is_white() {
         let mut scene = Scene { sky: Sky { bottom: DVec3::ONE, top: DVec3::ONE }, ..Scene::default() };
         let white = scene.add_material("white", material);
         scene.add_sphere(DVec3::new(0.0, 0.0, -1.0), 0.5, white);
-        let job = job_of(&scene, Camera::default(), [64, 36], 200, SamplerKind::Sobol, false);
+        let job = job_of(&scene, Camera::default(), [64, 36], 200, SamplerKind::Sobol);
         for mean in rendered(&mut gpu, &job, 16).means() {
             assert!(mean.iter().all(|x| (x - 1.0).abs() <= 1e-6), "{material:?}: {mean:?}");
         }
@@ -54,7 +54,7 @@ fn odd_sizes_and_depths() {
     let mut gradient = Stage::find("ppm-gradient").unwrap().recipe();
     for size in [[1, 1], [1, 2000], [2000, 1], [3, 5], [65, 9], [2, 700]] {
         for max_depth in [1, 8] {
-            let job = three_spheres(size, max_depth, false);
+            let job = three_spheres(size, max_depth);
             let apart = parted(&rendered(&mut gpu, &job, 3), &rendered(&mut cpu(), &job, 3), 1e-4);
             assert!(apart <= 2, "{size:?}, {max_depth} rays: {apart}");
         }
@@ -67,7 +67,7 @@ fn odd_sizes_and_depths() {
 #[test]
 fn dispatches_and_slabs_are_invisible() {
     let Some(mut whole) = gpu(GpuOptions::default()) else { return };
-    let job = three_spheres([50, 43], 12, true);
+    let job = three_spheres([50, 43], 12);
     let expected = rendered(&mut whole, &job, 37);
     let row = 50 * 2 * 24;
     for options in [
@@ -91,7 +91,7 @@ fn specialised_is_general() {
     let mut left_out = [0; 2];
     for scene in &BuiltinScene::ALL[..2] {
         let (spheres, camera) = (scene.build)();
-        let job = job_of(&spheres, camera, [96, 54], 20, SamplerKind::Sobol, false);
+        let job = job_of(&spheres, camera, [96, 54], 20, SamplerKind::Sobol);
         let (a, b) = (rendered(&mut specialised, &job, 1), rendered(&mut general, &job, 1));
         assert!(parted(&a, &b, 1e-3) <= 3, "{}", scene.name);
         left_out[0] += specialised.diagnostics().kernel.left_out.len();
@@ -110,7 +110,7 @@ fn lone_fuzzy_metal_matches_cpu() {
         for x in [-1.0, 0.0, 1.0] {
             scene.add_sphere(DVec3::new(x, 0.0, -1.0), 0.5, metal);
         }
-        job_of(&scene, Camera::default(), [64, 36], 20, SamplerKind::Sobol, false)
+        job_of(&scene, Camera::default(), [64, 36], 20, SamplerKind::Sobol)
     };
     let polished = rendered(&mut cpu(), &job(0.0), 1);
     for fuzz in [0.4, 1.0] {
@@ -129,7 +129,7 @@ fn the_first_of_equal_spheres_is_hit() {
     let again = scene.spheres.iter().map(|s| Sphere { material: (s.material + 1) % materials, ..*s });
     twice.spheres.extend(again);
     let mut film_of = |scene| {
-        let job = job_of(scene, camera, [96, 54], 20, SamplerKind::Sobol, false);
+        let job = job_of(scene, camera, [96, 54], 20, SamplerKind::Sobol);
         rendered(&mut gpu, &job, 4)
     };
     let (once, twice) = (film_of(&scene), film_of(&twice));
@@ -140,7 +140,7 @@ fn the_first_of_equal_spheres_is_hit() {
 #[test]
 fn cancelled_between_dispatches() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
-    let job = three_spheres([64, 36], 8, false);
+    let job = three_spheres([64, 36], 8);
     let expected = rendered(&mut gpu, &job, 4);
     let mut film = job.new_film();
     let result = gpu.accumulate(&job, 0..4, &mut film, &AtomicBool::new(true));
@@ -153,7 +153,7 @@ fn cancelled_between_dispatches() {
 fn samples_stay_on_device_until_read_back() {
     let new = || gpu(GpuOptions { film_limit: Some(50 * 2 * 24 * 16), ..GpuOptions::default() });
     let (Some(mut other), Some(mut gpu)) = (new(), new()) else { return };
-    let job = three_spheres([50, 43], 12, true);
+    let job = three_spheres([50, 43], 12);
     let expected = rendered(&mut other, &job, 32);
     let mut film = job.new_film();
     gpu.prepare(&job, &go_on()).unwrap();
@@ -183,7 +183,7 @@ fn samples_stay_on_device_until_read_back() {
 #[test]
 fn new_film_gets_no_old_samples() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
-    let job = three_spheres([64, 36], 8, false);
+    let job = three_spheres([64, 36], 8);
     let expected = rendered(&mut gpu, &job, 4);
     let mut dropped = job.new_film();
     gpu.prepare(&job, &go_on()).unwrap();
@@ -193,7 +193,7 @@ fn new_film_gets_no_old_samples() {
     assert!(rendered(&mut gpu, &job, 4) == expected);
     // Nor does a different job of the same size.
     gpu.advance(&job, 0..4, &mut job.new_film(), &Control::deferring(&go_on())).unwrap();
-    let other = three_spheres([64, 36], 3, false);
+    let other = three_spheres([64, 36], 3);
     let film = rendered(&mut gpu, &other, 4);
     assert!(film != expected);
     let mut fresh = crate::common::gpu::gpu(GpuOptions::default()).unwrap();
@@ -219,7 +219,7 @@ fn resolved(programs: &Programs, job: &RenderJob, film: &Film, transfer: Transfe
 #[test]
 fn resolve_matches_film() {
     let Some(programs) = Programs::open() else { return };
-    let job = three_spheres([64, 37], 8, true);
+    let job = three_spheres([64, 37], 8);
     let film = rendered(&mut cpu(), &job, 8);
     for transfer in [Transfer::Linear, Transfer::Gamma2, Transfer::LinearAboveGamma2] {
         let picture = resolved(&programs, &job, &film, transfer);
@@ -241,19 +241,19 @@ fn many_spheres_and_large_radiance() {
     // The brightest sky: the sum of a block fits 32 bits because blocks are short.
     let sky = Sky { bottom: DVec3::splat(100.0), top: DVec3::splat(100.0) };
     let scene = Scene { sky, ..Scene::default() };
-    let job = job_of(&scene, Camera::default(), [16, 9], 4, SamplerKind::Independent, false);
+    let job = job_of(&scene, Camera::default(), [16, 9], 4, SamplerKind::Independent);
     for mean in rendered(&mut gpu, &job, 1000).means() {
         assert!(mean.iter().all(|x| (x - 100.0).abs() < 1e-4), "{mean:?}");
     }
     let (scene, camera) = field(3000);
-    let job = job_of(&scene, camera, [64, 36], 10, SamplerKind::Sobol, false);
+    let job = job_of(&scene, camera, [64, 36], 10, SamplerKind::Sobol);
     assert!(parted(&rendered(&mut gpu, &job, 1), &rendered(&mut cpu(), &job, 1), 1e-3) <= 6);
 }
 
 #[test]
 fn moving_camera_keeps_scene_on_device() {
     let Some(mut moved) = gpu(GpuOptions::default()) else { return };
-    let job = job_of(&field(300).0, BOOK_CAMERA, [64, 36], 8, SamplerKind::Sobol, false);
+    let job = job_of(&field(300).0, BOOK_CAMERA, [64, 36], 8, SamplerKind::Sobol);
     rendered(&mut moved, &job, 2);
     assert!(!moved.diagnostics().kernel.hierarchy_time.is_zero());
     let settings = RenderSettings { width: 48, height: 27, ..*job.settings() };
@@ -272,7 +272,7 @@ fn moving_camera_keeps_scene_on_device() {
     }
 
     // A different scene gets a new hierarchy.
-    let other = job_of(&field(200).0, BOOK_CAMERA, [48, 27], 8, SamplerKind::Sobol, false);
+    let other = job_of(&field(200).0, BOOK_CAMERA, [48, 27], 8, SamplerKind::Sobol);
     let film = rendered(&mut moved, &other, 2);
     let Some(mut fresh) = gpu(GpuOptions::default()) else { return };
     assert!(film.halves() == rendered(&mut fresh, &other, 2).halves());

@@ -13,7 +13,6 @@ mod animation;
 mod check;
 mod cli;
 mod compare;
-mod diff;
 mod fault_injection;
 mod limits;
 mod log;

@@ -12,7 +12,7 @@ use weekender::system::files::{check_writable, replace_file};
 
 fn film() -> Film {
     let (width, height) = (13, 7);
-    let mut film = Film::new(width, height, 2);
+    let mut film = Film::new(width, height);
     for half in 0..2 {
         for (i, sum) in film.halves_mut()[half].iter_mut().enumerate() {
             let x = i as f64 / 80.0;

@@ -24,7 +24,7 @@ fn a_drag_on_the_picture_takes_the_keys_from_a_field() {
 fn stages_without_rays_have_no_camera() {
     let harness = open("--stage ppm-tiny");
     assert!(harness.query_all_by_label("Field of view").next().is_none());
-    for device in [Device::Cpu, Device::Gpu, Device::Both] {
+    for device in [Device::Cpu, Device::Gpu] {
         let is_disabled = harness.get_by_label(device.label()).accesskit_node().is_disabled();
         assert_eq!(is_disabled, device.unavailable().is_some(), "{device:?}");
     }

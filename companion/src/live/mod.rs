@@ -12,7 +12,7 @@ use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
 use sliders::sliders;
 use weekender::film::PixelSum;
-use weekender::job::render::{RenderJob, RenderSettings};
+use weekender::job::render::RenderJob;
 use weekender::kernel::{GpuSuspendedPath, Tag, WORKGROUP_SIZE, records};
 use weekender::render_gpu::shader_source::{EntryPoint, shared};
 use weekender::render_gpu::{
@@ -71,9 +71,7 @@ fn record((name, size, fields): records::Layout) -> (String, Value) {
 
 fn stage_data(stage: &Stage) -> Result<Value> {
     let recipe = stage.recipe();
-    // The page shows no error estimate, so one half is enough.
-    let settings = RenderSettings { estimate_error: false, ..recipe.settings };
-    let (camera, rules) = (recipe.camera, recipe.rules);
+    let (settings, camera, rules) = (recipe.settings, recipe.camera, recipe.rules);
     let job = RenderJob::new(recipe.scene, camera, settings, rules)?;
     let exported = Exported::new(&job);
     let overrides = exported.features.overrides().into_iter().map(|(name, value)| (name, value.into()));

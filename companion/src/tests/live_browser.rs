@@ -35,7 +35,6 @@ fn recipe_of(stage: &Stage, told: &Value) -> Recipe {
     recipe.scene = Arc::new(scene);
     recipe.camera = camera_of(&told["camera"]);
     recipe.settings.max_depth = told["depth"].as_u64().unwrap() as u32;
-    recipe.settings.estimate_error = false;
     recipe
 }
 
@@ -55,7 +54,8 @@ fn program_film(directory: &Path, name: &str, recipe: &Recipe) -> Film {
     for (flag, ending) in [("--scene", "toml"), ("--checkpoint", "exr"), ("--out", "png")] {
         program.arg(flag).arg(file(ending));
     }
-    let output = program.arg("--samples").arg(recipe.samples_per_pixel.to_string()).output().unwrap();
+    // The page's film is one half.
+    let output = program.arg("--samples").arg((2 * recipe.samples_per_pixel).to_string()).output().unwrap();
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{told}");
     assert!(!told.contains("continues"), "the program left the adapter: {told}");

@@ -3,7 +3,7 @@
 use crate::live::live_data;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
-use weekender::job::render::{RenderJob, RenderSettings, Renderer};
+use weekender::job::render::{RenderJob, Renderer};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
 use weekender::stages::{Setup, Stage};
 
@@ -21,11 +21,10 @@ pub fn small(id: &str, [width, height]: [u32; 2], samples_per_pixel: u64) -> Sta
     Stage { setup: Setup { width, height, samples_per_pixel, ..stage.setup }, ..*stage }
 }
 
-/// The job that the page renders of a stage: without an error estimate.
+/// The job that the page renders of a stage.
 pub fn job_of(stage: &Stage) -> RenderJob {
     let recipe = stage.recipe();
-    let settings = RenderSettings { estimate_error: false, ..recipe.settings };
-    RenderJob::new(recipe.scene, recipe.camera, settings, recipe.rules).unwrap()
+    RenderJob::new(recipe.scene, recipe.camera, recipe.settings, recipe.rules).unwrap()
 }
 
 /// Writes `index.html` and the stills. Each figure is a caption with one or two stages.

@@ -298,9 +298,6 @@ table! {
     Denoise "Denoise", "Filters the noise away and says how wrong the result is; films are saved as they are",
         key(Key::V),
         off(|f| match f.model.view.mode() {
-            _ if !f.document().settings.estimate_error => {
-                Some("The film has one half; denoising compares two".to_owned())
-            }
             Some(_) if f.model.view.partner != Partner::Raw => {
                 Some("Compared pictures are shown raw; compare with Without denoising instead".to_owned())
             }
@@ -355,9 +352,8 @@ fn family_rows() -> Vec<Row> {
         let row = row.off(|f| f.model.no_exposure()).also("channel rgb");
         rows.push(row.on(move |f| f.model.view.tone.channel == Some(channel)));
     }
-    for device in [Device::Cpu, Device::Gpu, Device::Both] {
-        let name = if device == Device::Both { "CPU and GPU together" } else { device.label() };
-        let row = Row::new(None, Command::Device(device), [name, device.help()]);
+    for device in [Device::Cpu, Device::Gpu] {
+        let row = Row::new(None, Command::Device(device), [device.label(), device.help()]);
         let row = row.off(move |_| device.unavailable()).also("device trace");
         rows.push(row.on(move |f| f.model.remembered.device == device));
     }

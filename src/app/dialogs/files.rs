@@ -391,11 +391,9 @@ impl LargeSize {
 
     /// None if the size is harmless.
     pub fn of(document: &Document, status: &Status, size: [u32; 2], before: [u32; 2]) -> Option<Self> {
-        let halves = document.settings.half_count();
         // The sums, the picture and its texture.
-        let bytes_of = |[width, height]: [u32; 2]| {
-            Film::bytes(width, height, halves) + 7 * u64::from(width) * u64::from(height)
-        };
+        let bytes_of =
+            |[width, height]: [u32; 2]| Film::bytes(width, height) + 7 * u64::from(width) * u64::from(height);
         let seconds_of = |size| seconds_at(status, size, samples_wanted(document, status));
         let (bytes, seconds) = (bytes_of(size), seconds_of(size));
         let is_slow = |size| seconds_of(size).is_some_and(|seconds| seconds > LargeSize::SECONDS);

@@ -19,7 +19,6 @@ impl DeviceOptions {
         match choice {
             BackendChoice::Cpu(cpu) => DeviceOptions { cpu: *cpu, ..Self::default() },
             BackendChoice::Gpu(gpu) => DeviceOptions { gpu: gpu.clone(), ..Self::default() },
-            BackendChoice::Both(cpu, gpu) => DeviceOptions { cpu: *cpu, gpu: gpu.clone() },
             BackendChoice::Reference { threads } => DeviceOptions {
                 cpu: CpuOptions { threads: *threads, ..CpuOptions::default() },
                 ..Self::default()
@@ -49,23 +48,21 @@ pub enum Device {
     #[default]
     Cpu,
     /// The graphics adapter.
+    #[serde(alias = "Both")]
     Gpu,
-    /// CPU and GPU together on one picture.
-    Both,
     /// Scalar `f64` on the CPU.
     Reference,
 }
 
 impl Device {
     /// All devices, in the order of the toggle.
-    pub const ALL: [Device; 4] = [Device::Cpu, Device::Gpu, Device::Both, Device::Reference];
+    pub const ALL: [Device; 3] = [Device::Cpu, Device::Gpu, Device::Reference];
 
     /// The name used by `--device`, the label in the window, and a short description.
     fn words(self) -> [&'static str; 3] {
         match self {
             Device::Cpu => ["cpu", "CPU", "Trace on the processor"],
             Device::Gpu => ["gpu", "GPU", "Trace on the graphics card, usually many times faster"],
-            Device::Both => ["cpu,gpu", "Both", "Trace one picture on processor and graphics card together"],
             Device::Reference => {
                 ["reference", "f64", "Trace with 16 digits instead of 7, slowly, to show rounding errors"]
             }
@@ -94,7 +91,6 @@ impl Device {
         match choice {
             BackendChoice::Cpu(_) => Device::Cpu,
             BackendChoice::Gpu(_) => Device::Gpu,
-            BackendChoice::Both(..) => Device::Both,
             BackendChoice::Reference { .. } => Device::Reference,
         }
     }
@@ -116,11 +112,13 @@ impl Device {
         let cpu = CpuOptions { lanes, threads, low_priority: true, ..options.cpu };
         // A user who presses the button wants it, so a software adapter is accepted.
         let dispatch_target = options.gpu.dispatch_target.min(INTERACTIVE_TARGET);
-        let gpu = || GpuOptions { allow_software: true, dispatch_target, ..options.gpu.clone() };
         match self {
             Device::Cpu => BackendChoice::Cpu(cpu),
-            Device::Gpu => BackendChoice::Gpu(gpu()),
-            Device::Both => BackendChoice::Both(cpu, gpu()),
+            Device::Gpu => BackendChoice::Gpu(GpuOptions {
+                allow_software: true,
+                dispatch_target,
+                ..options.gpu.clone()
+            }),
             Device::Reference => BackendChoice::Reference { threads },
         }
     }
@@ -129,7 +127,7 @@ impl Device {
     pub fn unavailable(self) -> Option<String> {
         match self {
             Device::Cpu | Device::Reference => None,
-            Device::Gpu | Device::Both => adapter().err(),
+            Device::Gpu => adapter().err(),
         }
     }
 }
@@ -177,11 +175,14 @@ mod tests {
         let long = std::time::Duration::from_secs(9);
         let gpu =
             GpuOptions { adapter: Some("mine".to_owned()), dispatch_target: long, ..GpuOptions::default() };
-        let options = DeviceOptions::of(&BackendChoice::Both(cpu, gpu.clone()));
-        let BackendChoice::Both(found, found_gpu) = Device::Both.backend(&options, None, Some(2)) else {
-            panic!("another backend")
+        let options = DeviceOptions { cpu, gpu: gpu.clone() };
+        let BackendChoice::Cpu(found) = Device::Cpu.backend(&options, None, Some(2)) else {
+            panic!("no CPU")
         };
         assert_eq!((found.threads, found.lanes, found.low_priority), (Some(2), None, true));
+        let BackendChoice::Gpu(found_gpu) = Device::Gpu.backend(&options, None, None) else {
+            panic!("no GPU")
+        };
         assert_eq!((found_gpu.adapter.as_deref(), found_gpu.allow_software), (Some("mine"), true));
         assert_eq!(found_gpu.dispatch_target, INTERACTIVE_TARGET, "the window stays responsive");
         let short = std::time::Duration::from_millis(1);

@@ -26,7 +26,7 @@ pub struct Document {
     pub camera: Camera,
     /// The bookmarks, in their order.
     pub keyframes: Vec<Keyframe>,
-    /// Size, depth, sampler, seed, halves.
+    /// Size, depth, sampler, seed.
     pub settings: RenderSettings,
     /// The size is the picture's own: it follows neither the viewport nor the book.
     pub has_own_size: bool,
@@ -252,8 +252,6 @@ impl Document {
         let settings = RenderSettings {
             width: width.div_ceil(divisor),
             height: height.div_ceil(divisor),
-            // Previews need no error estimate.
-            estimate_error: self.settings.estimate_error && divisor == 1,
             ..self.settings
         };
         self.checked.job(self.acting_camera(), settings)
@@ -340,14 +338,14 @@ mod tests {
     }
 
     #[test]
-    fn a_preview_is_smaller_and_has_no_error() {
+    fn a_preview_is_smaller() {
         let mut document = metal();
         document.give_size([31, 18]);
         let sizes = [1, 2, 4].map(|divisor| {
             let settings = *document.job(divisor).unwrap().settings();
-            (settings.width, settings.height, settings.estimate_error)
+            (settings.width, settings.height)
         });
-        assert_eq!(sizes, [(31, 18, true), (16, 9, false), (8, 5, false)]);
+        assert_eq!(sizes, [(31, 18), (16, 9), (8, 5)]);
         assert_eq!(document.job(0).unwrap(), document.job(1).unwrap());
     }
 

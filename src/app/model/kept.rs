@@ -70,7 +70,7 @@ impl Kept {
         let film = match &picture.film {
             Some(film) => Arc::clone(film),
             None => {
-                let film = Film::try_new(picture.width, picture.height, 1);
+                let film = Film::try_new(picture.width, picture.height);
                 let mut film = film.map_err(|error| words(&error))?;
                 // A file stores no light above white, and marks white so.
                 let known = |x: f64| if x.is_nan() { 1.0 } else { x.max(0.0) };

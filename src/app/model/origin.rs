@@ -129,9 +129,9 @@ impl Origin {
     /// The default stop condition: deterministic pictures end after their samples, others when their noise is low
     /// enough.
     pub fn usual_stop(&self) -> Stop {
-        let Recipe { rules, settings, samples_per_pixel, .. } = &self.recipe;
+        let Recipe { rules, samples_per_pixel, .. } = &self.recipe;
         let is_noisy = rules.antialiasing && rules.shading == Shading::Path;
-        if is_noisy && settings.estimate_error {
+        if is_noisy {
             Stop { noise: Some(Stop::NOISE), ..Stop::default() }
         } else {
             Stop::at_samples(*samples_per_pixel)

@@ -83,9 +83,7 @@ impl Model {
                 partners.push(Partner::Book);
             }
         }
-        if document.settings.estimate_error {
-            partners.push(Partner::Raw);
-        }
+        partners.push(Partner::Raw);
         partners.extend(self.view.kept.mine.iter().map(|_| Partner::Mine));
         partners.extend(self.view.kept.iter().map(|kept| Partner::Kept(kept.number)));
         partners
@@ -155,9 +153,8 @@ impl Model {
     /// Why a view has nothing to show; `None` if it has something.
     pub fn useless_show(&self, show: Show) -> Option<String> {
         let no = |reason: &str| Some(reason.to_owned());
-        let (has_error, shading) = (self.document.settings.estimate_error, self.document.rules().shading);
+        let shading = self.document.rules().shading;
         match show {
-            Show::Error if !has_error => no("The film has one half; switch on Estimate error"),
             Show::Normals | Show::Albedo | Show::Bounces if let Some(reason) = self.document.no_rays() => {
                 no(reason)
             }

@@ -118,7 +118,7 @@ fn step(ui: &mut Ui, cx: &PanelContext, command: Command, sign: &str) {
 }
 
 fn device(ui: &mut Ui, cx: &PanelContext) {
-    let devices = [Device::Cpu, Device::Gpu, Device::Both];
+    let devices = [Device::Cpu, Device::Gpu];
     command_switch(ui, cx, DEVICE, &devices.map(|device| (device.label(), Command::Device(device))));
 }
 

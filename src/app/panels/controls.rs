@@ -241,7 +241,7 @@ fn size_and_samples(ui: &mut Ui, document: &mut Document, remembered: &mut Remem
     let is_reset = fold(ui, header, document.no_rays().is_some(), |ui| {
         sizing(ui, document, remembered, cx);
         let usual = origin.recipe.samples_per_pixel;
-        stop(ui, &mut document.stop, document.settings.estimate_error, usual);
+        stop(ui, &mut document.stop, usual);
     });
     if is_reset {
         (document.has_own_size, document.stop) = (origin.keeps_size(), origin.usual_stop());
@@ -303,13 +303,12 @@ fn whole(ui: &mut Ui, about: About<'_>, value: &mut u32, limits: RangeInclusive<
 }
 
 /// The stop condition. A choice replaces the one of the command line.
-fn stop(ui: &mut Ui, stop: &mut Stop, has_error: bool, usual: u64) {
-    let no_error = (!has_error).then_some("Switch on \u{201c}Estimate the error\u{201d} under Tracer first");
+fn stop(ui: &mut Ui, stop: &mut Stop, usual: u64) {
     let choices = [
-        ("Error", Stop { noise: Some(Stop::NOISE), ..Stop::default() }, no_error),
-        ("Samples", Stop::at_samples(usual), None),
-        ("Time", Stop { seconds: Some(60.0), ..Stop::default() }, None),
-        ("Never", Stop::default(), None),
+        ("Error", Stop { noise: Some(Stop::NOISE), ..Stop::default() }),
+        ("Samples", Stop::at_samples(usual)),
+        ("Time", Stop { seconds: Some(60.0), ..Stop::default() }),
+        ("Never", Stop::default()),
     ];
     let chosen = match stop {
         Stop { noise: Some(_), .. } => 0,
@@ -318,8 +317,8 @@ fn stop(ui: &mut Ui, stop: &mut Stop, has_error: bool, usual: u64) {
         _ => 3,
     };
     list(ui, About::new("Stop at", "When the render is done"), choices[chosen].0, |ui| {
-        for (index, (name, other, reason)) in choices.into_iter().enumerate() {
-            if entry(ui, index == chosen, About::new(name, "").disabled_if(reason)) && index != chosen {
+        for (index, (name, other)) in choices.into_iter().enumerate() {
+            if entry(ui, index == chosen, About::new(name, "")) && index != chosen {
                 *stop = other;
             }
         }
@@ -327,7 +326,7 @@ fn stop(ui: &mut Ui, stop: &mut Stop, has_error: bool, usual: u64) {
     if let Some(noise) = &mut stop.noise {
         let help = "How far pixels may still be from the finished picture, in per cent of white";
         let mut percent = 100.0 * *noise;
-        let number = Number::new(About::new("Error", help).disabled_if(no_error), 1e-4..=100.0);
+        let number = Number::new(About::new("Error", help), 1e-4..=100.0);
         if number.unit(" %").speed(0.005).row(ui, &mut percent).changed() {
             *noise = percent / 100.0;
         }
@@ -367,8 +366,6 @@ fn tracer(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered) {
         }
         random_numbers(ui, settings, (!is_random).then_some("In this stage nothing is random"));
         threads_and_lanes(ui, remembered);
-        let help = "Keeps two halves of the samples, whose difference tells the error; costs memory";
-        check(ui, About::new("Estimate the error", help), &mut settings.estimate_error);
         let help = "Traces with 16 digits (f64) instead of 7 (f32), one ray at a time: slow, but it shows rounding errors";
         let mut is_reference = remembered.device == Device::Reference;
         if check(ui, About::new("Reference (f64)", help), &mut is_reference).changed() {

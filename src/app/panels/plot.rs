@@ -21,13 +21,7 @@ const FARTHEST: f64 = 1e6;
 pub fn ui(ui: &mut Ui, cx: &PanelContext) {
     let status = &cx.status;
     if points(status).is_empty() {
-        hint(
-            ui,
-            match cx.document().settings.estimate_error {
-                true => "The error is known after four samples per pixel.",
-                false => "Switch on \u{201c}Estimate the error\u{201d} under Tracer.",
-            },
-        );
+        hint(ui, "The error is known after four samples per pixel.");
         return;
     }
     let drawn = Drawn::of(ui, cx);
@@ -116,7 +110,7 @@ struct Drawn {
 impl Drawn {
     fn of(ui: &Ui, cx: &Snapshot) -> Self {
         let (status, goal) = (&cx.status, cx.document().stop.noise);
-        let &theme::Colours { third, fourth: of_both, weak, .. } = theme::colours(ui);
+        let &theme::Colours { third, fourth: of_other, weak, .. } = theme::colours(ui);
         let style = |backend: &str| style(ui, backend);
         let mut drawn: Vec<Curve> = Vec::new();
         for (backend, points) in curves(status) {
@@ -126,7 +120,7 @@ impl Drawn {
             let is_device = cx.model.other_device().is_some();
             let [[_, name], _] = cx.model.side_names();
             for (backend, points) in curves(other) {
-                drawn.push((if is_device { style(backend).0 } else { of_both }, name.clone(), points));
+                drawn.push((if is_device { style(backend).0 } else { of_other }, name.clone(), points));
             }
         }
         let now = points(status).last().map(at);
@@ -201,11 +195,10 @@ fn plot(ui: &mut Ui, cx: &Snapshot, Drawn { curves, expected, goal }: Drawn) {
 
 /// The colour and the name of a backend's curve.
 fn style(ui: &Ui, backend: &str) -> (Color32, &'static str) {
-    let &theme::Colours { first: of_cpu, second: of_gpu, fourth: of_both, .. } = theme::colours(ui);
+    let &theme::Colours { first: of_cpu, second: of_gpu, .. } = theme::colours(ui);
     match backend {
         "cpu" => (of_cpu, "CPU"),
         "gpu" => (of_gpu, "GPU"),
-        "cpu,gpu" => (of_both, "both"),
         _ => (ui.visuals().strong_text_color(), "reference"),
     }
 }

@@ -226,11 +226,11 @@ fn figures(snapshot: &Snapshot) -> Vec<(&'static str, String)> {
     // A film that was opened does not say how its samples were traced.
     let has_paths = status.stats.paths > 0;
     let rays = status.stats.rays as f64 / status.stats.paths.max(1) as f64;
-    let on_cpu = status.contributions.iter().rev().find(|part| part.backend.name.starts_with("cpu"));
+    let on_cpu = status.contributions.iter().rev().find(|part| part.backend.name == "cpu");
     let lanes = status.lane_occupancy().zip(on_cpu);
     let lanes = lanes.map(|(share, part)| format!("{}, {:.0} % at work", part.backend.lanes, 100.0 * share));
     let settings = snapshot.document().settings;
-    let bytes = Film::bytes(settings.width, settings.height, settings.half_count());
+    let bytes = Film::bytes(settings.width, settings.height);
     vec![
         ("Speed", if has_paths { format!("{speed:.1} million paths per second") } else { unknown() }),
         ("Rays per path", if has_paths { format!("{rays:.1} on average") } else { unknown() }),

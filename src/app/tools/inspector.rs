@@ -304,7 +304,7 @@ mod tests {
     use super::*;
     use crate::app::model::{Origin, Source};
     use crate::job::recipe::Recipe;
-    use crate::render_cpu::record_path;
+    use crate::render_cpu::{Isa, PathRecorder};
 
     #[test]
     fn a_comparison_names_both_sides_and_tells_the_change() {
@@ -335,8 +335,9 @@ mod tests {
     fn the_sphere_under_the_pointer_is_named() {
         let document = Document::new(Origin::new(Recipe::builtin("three-spheres").unwrap(), Source::Builtin));
         let [width, height] = [document.settings.width, document.settings.height];
+        let recorder = PathRecorder::new(&document.job(1).unwrap(), Isa::Portable, None);
         for at in [[width / 8, height * 7 / 8], [width / 2, height / 2], [width / 2, height / 8]] {
-            let path = record_path(&document.job(1).unwrap(), at, 0, None);
+            let path = recorder.record(at, 0);
             let expected =
                 path.rays[0].hit.map_or("sky".to_owned(), |hit| names(document.scene(), hit.sphere).1);
             assert_eq!(surface(&document, at).unwrap().0, expected, "{at:?}");

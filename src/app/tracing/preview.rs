@@ -1,6 +1,7 @@
 //! How coarse a preview is: as fine as the time from request to picture allows.
 
 use crate::app::model::Document;
+use crate::film::HALVES;
 use crate::progressive::Status;
 use crate::stages::Shading;
 
@@ -86,7 +87,7 @@ impl Previews {
     /// The preview to show before the first samples of a picture. `coarser` is the divisor of what is on the screen; each
     /// preview is at least twice as fine.
     pub fn look(&self, document: &Document, coarser: Option<u32>) -> Preview {
-        let samples = pixels(document) * document.settings.half_count() as f64;
+        let samples = pixels(document) * HALVES as f64;
         if samples / self.render_speed.unwrap_or(USUAL_SPEED) <= PATIENCE {
             return Preview::NONE;
         }
@@ -214,10 +215,7 @@ mod tests {
         assert_eq!(previews.look(&document("book", [320, 180]), None), Preview::NONE);
         assert!(previews.look(&document("book", [1600, 900]), None).divisor > 2);
         // Each half of the film needs a sample.
-        let mut between = document("book", [640, 360]);
-        assert!(between.settings.estimate_error && previews.look(&between, None).divisor > 1);
-        between.settings.estimate_error = false;
-        assert_eq!(previews.look(&between, None), Preview::NONE);
+        assert!(previews.look(&document("book", [640, 360]), None).divisor > 1);
         previews.render_speed = Some(1e9);
         assert_eq!(previews.look(&document("book", [1600, 900]), None), Preview::NONE);
     }

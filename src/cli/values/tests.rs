@@ -14,7 +14,6 @@ fn values_are_read_up_to_their_limits() {
     assert_eq!([parse_isa("auto"), parse_isa("portable")], [Ok(None), Ok(Some(Isa::Portable))]);
     assert_eq!([parse_levels("auto"), parse_levels("all")], [None, Some(Isa::available())].map(Ok));
     assert_eq!(parse_levels("portable, portable"), Ok(Some(vec![Isa::Portable])));
-    assert_eq!(parse_pixel("3, 4"), Ok([3, 4]));
     assert_eq!(["0", "1"].map(number(0.0..=1.0, "")), [Ok(0.0), Ok(1.0)]);
     assert_eq!([parse_seconds("1e9"), parse_noise_target("3.1e-8")], [Ok(1e9), Ok(3.1e-8)]);
 }
@@ -59,6 +58,6 @@ fn refusals_name_what_is_allowed() {
     for text in ["", "0", "1e-9", "101", "nan"] {
         assert!(parse_noise_target(text).unwrap_err().contains("above 3e-8"), "{text}");
     }
-    assert!(parse_simd("3").is_err() && parse_isa("mmx").is_err() && parse_pixel("1,2,3").is_err());
+    assert!(parse_simd("3").is_err() && parse_isa("mmx").is_err());
     assert!(number(0.0..=1.0, "")("1.001").is_err() && number(.., "")("inf").is_err());
 }

@@ -148,7 +148,6 @@ impl Studio {
     pub fn new(recipe: Recipe, [width, height]: [u32; 2]) -> Result<Studio> {
         let settings = RenderSettings {
             sampler: SamplerKind::Independent,
-            estimate_error: false,
             // The reader's picture may be one of ours with the default seed.
             seed: 0x6368_6563,
             width: width.max(1),

@@ -17,7 +17,7 @@ fn random(pixel: u32, half: u32, seed: u32) -> f64 {
 
 /// An 80 x 48 film with one sample per half; `value` gives the radiance for half and pixel.
 fn film_of(value: impl Fn(u32, u32) -> f64) -> Picture {
-    let mut film = Film::new(80, 48, 2);
+    let mut film = Film::new(80, 48);
     for (half, pixels) in (0..).zip(film.halves_mut()) {
         for (pixel, sum) in (0..).zip(pixels) {
             *sum = fixed_point([value(half, pixel); 3]).unwrap();
@@ -35,7 +35,7 @@ fn noisy(seed: u32, offset: f64) -> Picture {
 /// A float picture without halves.
 fn floats(value: impl Fn(u32) -> f64) -> Picture {
     let pixels = (0..PIXELS as u32).map(|pixel| [value(pixel); 3]).collect();
-    Picture { film: None, pixels, ..Picture::of_film(String::new(), String::new(), Film::new(80, 48, 1)) }
+    Picture { film: None, pixels, ..Picture::of_film(String::new(), String::new(), Film::new(80, 48)) }
 }
 
 /// An 8-bit linear picture.
@@ -69,7 +69,7 @@ fn noise_hides_offset_unless_samples_are_shared() {
 #[test]
 fn difference_noise_combines_both_films() {
     let film = |seed: u32, samples: u64, middle: f64| {
-        let mut film = Film::new(80, 48, 2);
+        let mut film = Film::new(80, 48);
         for (sample, pixel) in (0..samples).flat_map(|sample| (0..PIXELS).map(move |pixel| (sample, pixel))) {
             let value = middle + 0.2 * (random(pixel as u32, sample as u32, seed) - 0.5);
             film.halves_mut()[(sample % 2) as usize][pixel].add(fixed_point([value; 3]).unwrap());
@@ -100,7 +100,7 @@ fn mean_within_rounding_is_equal() {
     let picture = |offset: f64| {
         let samples = 1 << 20;
         let sum = (samples / 2) as f64 * (0.5 + offset) * FIXED_POINT_SCALE;
-        let mut film = Film::new(80, 48, 2);
+        let mut film = Film::new(80, 48);
         film.halves_mut().iter_mut().flatten().for_each(|pixel| *pixel = PixelSum([sum.round() as u64; 3]));
         film.record(0..samples, 0).unwrap();
         Picture::of_film(String::new(), String::new(), film)

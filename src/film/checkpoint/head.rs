@@ -1,7 +1,7 @@
 //! The head of a film file, which describes its sums, and the checksums.
 
 use super::{Film, PixelSum, SAMPLE_VERSION, VERSION};
-use crate::film::{Checksum, FilmError, SampleRanges};
+use crate::film::{Checksum, FilmError, HALVES, SampleRanges};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -17,7 +17,7 @@ pub(super) struct Head {
     pub sample_version: u32,
     pub width: u32,
     pub height: u32,
-    pub halves: usize,
+    pub halves: u32,
     pub samples: Vec<[u64; 2]>,
     pub rejected: u64,
     /// Checksum of the other fields and of the texts.
@@ -64,7 +64,7 @@ impl Head {
             sample_version: SAMPLE_VERSION,
             width: film.width(),
             height: film.height(),
-            halves: film.halves().len(),
+            halves: HALVES as u32,
             samples: film.samples().iter().map(|range| [range.start, range.end]).collect(),
             rejected: film.rejected(),
             head_checksum: String::new(),
@@ -81,7 +81,7 @@ impl Head {
     /// The checksum of all other fields and the texts.
     pub fn checksum(&self, texts: Texts) -> String {
         let mut sum = Checksum::default();
-        sum.words(&[self.version.into(), self.width.into(), self.height.into(), self.halves as u64]);
+        sum.words(&[self.version.into(), self.width.into(), self.height.into(), self.halves.into()]);
         sum.words(&[self.rejected, self.samples.len() as u64]);
         self.samples.iter().for_each(|range| sum.words(range));
         texts.iter().for_each(|text| sum.text(text));

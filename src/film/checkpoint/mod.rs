@@ -4,7 +4,7 @@
 //! The file has one part, scan lines and lossless compression. Channels `R`, `G`, `B` (float) are the mean. Channels
 //! `rest.R.lo`, `rest.R.hi` and so on (32-bit unsigned) are the low and high words of what the rounding of the mean
 //! loses: mean times samples times 2^24, rounded, plus the rest is the exact sum. The rest is small, so it takes little
-//! space. If there are two halves, `sum.a.R.lo` and so on are the sums of the first; the second's is the difference.
+//! space. `sum.a.R.lo` and so on are the sums of the first half; those of the second are the difference.
 //! Channels `denoised.R`, `.G` and `.B`, if present, are a denoised picture for other programs; they are not read.
 //! Three text attributes go with them: `comments` has the description's lines, `weekenderRecipe` the recipe, and
 //! `weekenderFilm` the `Head`.
@@ -28,7 +28,7 @@ pub use read::load;
 pub(crate) use write::write;
 pub use write::{save, save_with};
 
-use super::{Description, Film, FilmError, PixelSum, SOFTWARE, SampleRanges};
+use super::{Description, Film, FilmError, HALVES, PixelSum, SOFTWARE, SampleRanges};
 use crate::system::files::{InputError, ShownPath};
 use crate::system::memory::MemoryError;
 use std::path::PathBuf;
@@ -80,6 +80,12 @@ pub enum CheckpointError {
         path.shown()
     )]
     Version { path: PathBuf, layout: i64, samples: i64, writer: String },
+    #[error(
+        "{} has {halves} of the {HALVES} halves of a film, as earlier versions wrote with --estimate-error off, so its error is \
+         unknown; render it again",
+        path.shown()
+    )]
+    Halves { path: PathBuf, halves: u32 },
     /// Something in the file is missing or was changed.
     #[error("{} is damaged: {what}; use an earlier copy or render it again", path.shown())]
     Damaged { path: PathBuf, what: String },
@@ -106,7 +112,7 @@ mod tests {
     const TEXTS: Texts = [b"[render]\n", b"Scene: none\n"];
 
     fn film() -> Film {
-        let mut film = Film::new(4, 3, 2);
+        let mut film = Film::new(4, 3);
         for (index, sum) in film.halves_mut().iter_mut().flatten().enumerate() {
             sum.0 = [index as u64 * 0x1000_0001; 3];
         }
@@ -152,11 +158,13 @@ mod tests {
         refused(|head| head.samples = vec![[9, 3]], "9..3");
         refused(|head| head.samples = vec![[0, 6], [4, 10]], "samples 4..6 are already");
         refused(|head| head.samples = vec![[0, 20]], "the rows 0 to 2: the ");
-        refused(|head| head.bands = Vec::new(), "2 halves and 0 checksums of bands");
+        refused(|head| head.bands = Vec::new(), "0 checksums of bands");
         refused(|head| head.rejected = 1 << 62, "4611686018427387904 samples rejected");
         refused(|head| head.rejected = 121, "121 samples rejected");
-        refused(|head| head.halves = 3, "3 halves and 1 checksums of bands");
-        resaved(|head| head.halves = 1, "its channels are not those of a film: B, G, R, rest.B.hi");
+        for halves in [1, 3] {
+            let error = opened(&file(|head| head.halves = halves)).unwrap_err();
+            assert!(matches!(error, CheckpointError::Halves { halves: found, .. } if found == halves));
+        }
         resaved(|head| head.width = 5, "4x3 pixels, but its head says 5x3");
     }
 

@@ -4,8 +4,8 @@ use super::head::{Head, Versions, band_count};
 use super::length::check_length;
 use super::planes::{self, Plane};
 use super::{
-    CheckpointError, Description, FILM_ATTRIBUTE, MAGIC, RECIPE_ATTRIBUTE, SAMPLE_VERSION, SampleRanges,
-    VERSION,
+    CheckpointError, Description, FILM_ATTRIBUTE, HALVES, MAGIC, RECIPE_ATTRIBUTE, SAMPLE_VERSION,
+    SampleRanges, VERSION,
 };
 use crate::system::files::{self, InputError};
 use exr::block::reader::Reader;
@@ -20,8 +20,6 @@ use std::path::Path;
 pub struct FilmHead {
     pub width: u32,
     pub height: u32,
-    /// 1 or 2.
-    pub halves: usize,
     /// The samples that every pixel holds.
     pub samples: SampleRanges,
     /// Rejected samples, over all pixels.
@@ -60,13 +58,15 @@ impl<'a> Opened<'a> {
 
     fn with(header: &Header, length: u64, path: &'a Path) -> Result<Option<Self>, CheckpointError> {
         let Some((head, description)) = read_texts(header, path)? else { return Ok(None) };
+        if u64::from(head.halves) != HALVES {
+            return Err(CheckpointError::Halves { path: path.to_owned(), halves: head.halves });
+        }
         let resaved = |what| CheckpointError::Resaved { path: path.to_owned(), what };
         let planes = planes::find(header, &head).map_err(resaved)?;
         check_length(header, length).map_err(|what| damaged(path, what))?;
         let about = FilmHead {
             width: head.width,
             height: head.height,
-            halves: head.halves,
             samples: head.ranges().map_err(|error| damaged(path, error))?,
             rejected: head.rejected,
             description,
@@ -147,11 +147,9 @@ fn read_head_text(bytes: &[u8], header: &Header, path: &Path) -> Result<Head, Ch
         });
     }
     let head: Head = toml::from_str(text).map_err(unreadable)?;
-    let (halves, checksums, bands) = (head.halves, head.bands.len(), band_count(head.height) as usize);
-    if !(1..=2).contains(&halves) || checksums != bands {
-        let what =
-            format!("it has {halves} halves and {checksums} checksums of bands, but should have {bands}");
-        return Err(damaged(path, what));
+    let (checksums, bands) = (head.bands.len(), band_count(head.height) as usize);
+    if checksums != bands {
+        return Err(damaged(path, format!("it has {checksums} checksums of bands, but should have {bands}")));
     }
     Ok(head)
 }

@@ -16,14 +16,14 @@ pub(super) enum Plane {
     Mean { colour: usize },
     /// A denoised picture, which is not part of the film and not read.
     Denoised { colour: usize },
-    /// Words of the sums of the first of two halves. Those of the last half follow from the others.
+    /// Words of the sums of the first half. Those of the second follow from the others.
     Sum { colour: usize, shift: u32 },
     /// Words of the rest: see [`mean_and_rest`].
     Rest { colour: usize, shift: u32 },
 }
 
-/// The channels of a film with this number of halves, sorted by name as the format requires, and what they hold.
-pub(super) fn channels(half_count: usize, is_denoised: bool) -> Vec<(ChannelDescription, Plane)> {
+/// The channels of a film, sorted by name as the format requires, and what they hold.
+pub(super) fn channels(is_denoised: bool) -> Vec<(ChannelDescription, Plane)> {
     let mut channels = Vec::new();
     let mut add = |name: &str, sample_type, plane| {
         let name = Text::from_slice_unchecked(name.as_bytes());
@@ -36,9 +36,7 @@ pub(super) fn channels(half_count: usize, is_denoised: bool) -> Vec<(ChannelDesc
         }
         for (shift, word) in [(0, "lo"), (32, "hi")] {
             add(&format!("rest.{name}.{word}"), SampleType::U32, Plane::Rest { colour, shift });
-            if half_count == 2 {
-                add(&format!("sum.a.{name}.{word}"), SampleType::U32, Plane::Sum { colour, shift });
-            }
+            add(&format!("sum.a.{name}.{word}"), SampleType::U32, Plane::Sum { colour, shift });
         }
     }
     channels.sort_by(|a, b| a.0.name.cmp(&b.0.name));
@@ -61,7 +59,7 @@ pub(super) fn find(header: &Header, head: &Head) -> Result<Vec<Plane>, String> {
     let list = &header.channels.list;
     let is_denoised =
         list.iter().any(|channel| channel.name.as_slice().starts_with(DENOISED_LAYER.as_bytes()));
-    let known = channels(head.halves, is_denoised);
+    let known = channels(is_denoised);
     let is_known = |(found, (known, _)): (&ChannelDescription, &(ChannelDescription, Plane))| {
         (&found.name, found.sample_type) == (&known.name, known.sample_type)
     };
@@ -101,7 +99,7 @@ fn from_mean(mean: f32, unit: f64) -> i64 {
 struct Stored {
     means: [u32; 3],
     rests: [u64; 3],
-    /// The sums of the first of two halves.
+    /// The sums of the first half.
     first: [u64; 3],
 }
 
@@ -139,7 +137,7 @@ impl Row {
     }
 
     /// Appends the sums of the row to each half, and returns whether they match the picture.
-    pub fn append_sums(&self, unit: f64, halves: &mut [Vec<PixelSum>]) -> bool {
+    pub fn append_sums(&self, unit: f64, [a, b]: &mut [Vec<PixelSum>; 2]) -> bool {
         let mut matches = true;
         for Stored { means, rests, first } in &self.pixels {
             let totals = [0, 1, 2].map(|colour| sum_of(f32::from_bits(means[colour]), rests[colour], unit));
@@ -148,12 +146,8 @@ impl Row {
             matches &= (0..3).all(|colour| {
                 last[colour] <= totals[colour] && mean(totals[colour], unit).to_bits() == means[colour]
             });
-            if let [a, b] = halves {
-                a.push(PixelSum(*first));
-                b.push(PixelSum(last));
-            } else {
-                halves[0].push(PixelSum(last));
-            }
+            a.push(PixelSum(*first));
+            b.push(PixelSum(last));
         }
         matches
     }

@@ -27,11 +27,10 @@ pub fn load(path: &Path) -> Result<FilmFile, CheckpointError> {
         FilmError::Memory(reason) => CheckpointError::Memory { path: path.to_owned(), reason },
         other => damaged(path, other),
     };
-    let mut halves = Film::try_new(width, height, opened.about.halves).map_err(no_film)?.halves;
-    opened.read_all(&file, &mut halves).map_err(|error| resaved_or(error, &opened.header))?;
+    let mut film = Film::try_new(width, height).map_err(no_film)?;
+    opened.read_all(&file, film.halves_mut()).map_err(|error| resaved_or(error, &opened.header))?;
     let FilmHead { samples, rejected, description, .. } = opened.about;
-    let film = Film::from_parts(width, height, halves, samples, rejected).map_err(no_film)?;
-    Ok(FilmFile { film, description })
+    Ok(FilmFile { film: film.with_samples(samples, rejected).map_err(no_film)?, description })
 }
 
 impl Opened<'_> {
@@ -67,13 +66,13 @@ impl Opened<'_> {
         bands: Range<u32>,
         mut sums: Vec<&mut [PixelSum]>,
     ) -> Result<(), CheckpointError> {
-        let FilmHead { width, height, halves, samples, .. } = &self.about;
+        let FilmHead { width, height, samples, .. } = &self.about;
         let (width, unit) = (*width as usize, Film::fixed_point(samples.count()));
         let first_row = band_rows(bands.start, *height).start as usize;
         let wanted = first_row..band_rows(bands.end - 1, *height).end as usize;
         let chunks = reader.filter_chunks(true, |_, _, block| wanted.contains(&block.pixel_position.y()));
         let mut chunks = chunks.map_err(|error| damaged(self.path, error))?.sequential_decompressor(true);
-        let (mut row, mut found) = (Row::new(width), vec![Vec::new(); *halves]);
+        let (mut row, mut found) = (Row::new(width), [Vec::new(), Vec::new()]);
         for band in bands {
             found.iter_mut().for_each(Vec::clear);
             let rows = band_rows(band, *height);
@@ -147,7 +146,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let [path, other] = ["a.exr", "b.exr"].map(|name| directory.path().join(name));
         for (path, samples) in [(&path, 0..4), (&other, 4..6)] {
-            let mut film = Film::new(4, 40, 2);
+            let mut film = Film::new(4, 40);
             film.record(samples, 0).unwrap();
             save(path, &film, &Description::new("r")).unwrap();
         }

@@ -61,7 +61,7 @@ pub(super) fn write_with(
     head: &Head,
     writer: &mut (impl Write + Seek),
 ) -> io::Result<()> {
-    let planes = planes::channels(film.halves().len(), denoised.is_some());
+    let planes = planes::channels(denoised.is_some());
     let channels: SmallVec<[ChannelDescription; 5]> =
         planes.iter().map(|(channel, _)| channel.clone()).collect();
     let size = (film.width() as usize, film.height() as usize);

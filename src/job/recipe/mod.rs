@@ -25,7 +25,7 @@ pub struct Recipe {
     pub camera: Camera,
     /// The keyframes of an animation in ascending order of frames. Not part of the job, which is one picture.
     pub keyframes: Vec<Keyframe>,
-    /// Size, depth, sampler, seed, halves.
+    /// Size, depth, sampler, seed.
     pub settings: RenderSettings,
     pub rules: Rules,
     /// Samples per pixel that the picture should have, `1..=2^32`. Not part of the job: a film can have any number.

@@ -104,7 +104,7 @@ impl RenderJob {
     }
 
     pub fn new_film(&self) -> Film {
-        Film::new(self.settings.width, self.settings.height, self.settings.half_count())
+        Film::new(self.settings.width, self.settings.height)
     }
 
     /// Returns an error if preparing, tracing and writing the job with `films` films of its size needs more memory than
@@ -114,26 +114,20 @@ impl RenderJob {
     /// [`MemoryError`], with a remedy.
     pub fn check_memory(&self, films: u64) -> Result<(), MemoryError> {
         let RenderSettings { width, height, .. } = self.settings;
-        let film = Film::bytes(width, height, self.settings.half_count()).saturating_mul(films);
+        let film = Film::bytes(width, height).saturating_mul(films);
         let output = u64::from(width) * u64::from(height) * OUTPUT_BYTES_PER_PIXEL;
         let spheres = self.scene.spheres.len();
-        let remedy = match self.settings.half_count() {
-            1 => "choose a smaller --size or a scene of fewer spheres",
-            _ => {
-                "choose a smaller --size or a scene of fewer spheres, or --estimate-error off, which halves the film"
-            }
-        };
         memory::check(
             || format!("a picture of {width}x{height} of {spheres} spheres"),
             film.saturating_add(output).saturating_add(TRACING_BYTES_PER_SPHERE * spheres as u64),
-            remedy,
+            "choose a smaller --size or a scene of fewer spheres",
         )
     }
 
-    /// Whether a film has this job's shape.
+    /// Whether a film has this job's size.
     pub fn fits(&self, film: &Film) -> bool {
         let RenderSettings { width, height, .. } = self.settings;
-        (film.width(), film.height(), film.halves().len()) == (width, height, self.settings.half_count())
+        (film.width(), film.height()) == (width, height)
     }
 }
 
@@ -264,29 +258,25 @@ impl<'a> Control<'a> {
 }
 
 /// The result of [`Renderer::advance`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
-    Added {
-        /// Statistics of the samples that this call added to the film.
-        stats: Stats,
-        /// Which backends added how many samples per pixel; empty if the renderer itself added all.
-        credits: Vec<(BackendInfo, u64)>,
-    },
+    /// Statistics of the samples that this call added to the film.
+    Added(Stats),
     /// The call was stopped and the film is unchanged.
     Withdrawn,
 }
 
 impl From<Stats> for Outcome {
     fn from(stats: Stats) -> Self {
-        Outcome::Added { stats, credits: Vec::new() }
+        Outcome::Added(stats)
     }
 }
 
 impl Outcome {
     /// Statistics of the samples that were added.
-    pub fn stats(&self) -> Stats {
+    pub fn stats(self) -> Stats {
         match self {
-            Outcome::Added { stats, .. } => *stats,
+            Outcome::Added(stats) => stats,
             Outcome::Withdrawn => Stats::default(),
         }
     }

@@ -39,27 +39,11 @@ pub struct RenderSettings {
     pub sampler: SamplerKind,
     /// Seed of the sampler: it changes only the noise.
     pub seed: u32,
-    /// Whether samples are divided between two halves with separate scramblings, so that the error can be estimated.
-    pub estimate_error: bool,
 }
 
 impl Default for RenderSettings {
     /// The settings for a scene file that specifies none.
     fn default() -> Self {
-        RenderSettings {
-            width: 800,
-            height: 450,
-            max_depth: 50,
-            sampler: SamplerKind::Sobol,
-            seed: 0,
-            estimate_error: true,
-        }
-    }
-}
-
-impl RenderSettings {
-    /// Number of halves of the film: 2 if the error is estimated, else 1.
-    pub fn half_count(&self) -> usize {
-        if self.estimate_error { 2 } else { 1 }
+        RenderSettings { width: 800, height: 450, max_depth: 50, sampler: SamplerKind::Sobol, seed: 0 }
     }
 }

@@ -49,11 +49,11 @@ fn views_share_a_scene_but_copies_do_not() {
 }
 
 #[test]
-fn a_film_of_the_same_size_and_halves_fits() {
+fn a_film_of_the_same_size_fits() {
     let job = job(4, 3, 1).unwrap();
-    assert!(job.fits(&job.new_film()) && job.fits(&Film::new(4, 3, 2)));
-    for (width, height, halves) in [(3, 4, 2), (5, 3, 2), (4, 2, 2), (4, 3, 1)] {
-        assert!(!job.fits(&Film::new(width, height, halves)), "{width}x{height}, {halves} halves");
+    assert!(job.fits(&job.new_film()) && job.fits(&Film::new(4, 3)));
+    for (width, height) in [(3, 4), (5, 3), (4, 2)] {
+        assert!(!job.fits(&Film::new(width, height)), "{width}x{height}");
     }
 }
 
@@ -62,7 +62,7 @@ fn memory_check_counts_films_file_and_spheres() {
     if memory::room().is_none() {
         return;
     }
-    // More than any machine has, in 24 bytes for each pixel of a half.
+    // More than any machine has, in 48 bytes for each pixel.
     const FILMS: u64 = 1 << 20;
     let (width, height) = (SIZE_LIMIT, SIZE_LIMIT - 1);
     let pixels = u64::from(width) * u64::from(height);
@@ -71,14 +71,11 @@ fn memory_check_counts_films_file_and_spheres() {
     for x in [-3.0, 0.0, 3.0] {
         scene.add_sphere(DVec3::new(x, 0.0, -5.0), 1.0, glass);
     }
-    for (estimate_error, halves) in [(true, 2), (false, 1)] {
-        let settings = RenderSettings { width, height, estimate_error, ..RenderSettings::default() };
-        let job = RenderJob::new(scene.clone(), Camera::BOOK, settings, Rules::FINISHED).unwrap();
-        let error = job.check_memory(FILMS).unwrap_err();
-        assert_eq!(error.needed_bytes, pixels * (24 * halves * FILMS + 4) + 3 * 400 + (64 << 20));
-        assert_eq!(error.what, "a picture of 16384x16383 of 3 spheres");
-        assert_eq!(error.remedy.contains("--estimate-error off"), estimate_error, "{}", error.remedy);
-    }
+    let settings = RenderSettings { width, height, ..RenderSettings::default() };
+    let job = RenderJob::new(scene, Camera::BOOK, settings, Rules::FINISHED).unwrap();
+    let error = job.check_memory(FILMS).unwrap_err();
+    assert_eq!(error.needed_bytes, pixels * (48 * FILMS + 4) + 3 * 400 + (64 << 20));
+    assert_eq!(error.what, "a picture of 16384x16383 of 3 spheres");
 }
 
 #[test]

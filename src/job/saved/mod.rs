@@ -86,8 +86,8 @@ pub fn open(path: &Path) -> Result<Saved, OpenError> {
     let recipe = file::parse(description, &label)
         .map_err(|reason| anyhow!("{label} has a recipe that cannot be read: {reason}"))?;
     let settings = &recipe.settings;
-    if let Kind::Film(FilmHead { width, height, halves, .. }) = kind
-        && (width, height, halves) != (settings.width, settings.height, settings.half_count())
+    if let Kind::Film(FilmHead { width, height, .. }) = kind
+        && (width, height) != (settings.width, settings.height)
     {
         return Err(OpenError::Recipe(anyhow!(
             "{label} is a film that does not have the size that its recipe says; render it again"

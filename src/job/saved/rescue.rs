@@ -73,7 +73,7 @@ mod tests {
         let at = |name: &str| directory.path().join(name);
         std::fs::write(at("file"), "").unwrap();
         std::fs::create_dir_all(at("made/deep")).unwrap();
-        let mut film = Film::new(4, 3, 2);
+        let mut film = Film::new(4, 3);
         film.record(0..6, 0).unwrap();
         let mut description = Description::new("r");
         description.set(key::SECONDS, 7.2);

@@ -11,6 +11,7 @@ use super::{Candidate, write_json};
 use crate::backends::BackendChoice;
 use crate::cli::{BenchOptions, BenchScene};
 use crate::denoise;
+use crate::film::HALVES;
 use crate::job::render::RenderJob;
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::render_gpu::GpuOptions;
@@ -187,12 +188,11 @@ impl Bench<'_> {
     /// Warms up with growing sample counts, up to `samples`, and sets how many fit the time limit.
     fn warm_up(&self, candidate: &mut Candidate, job: &RenderJob, samples: u64, row: &mut Row) -> Result<()> {
         let limit = self.options.run_limit_seconds();
-        let least = job.settings().half_count() as u64;
-        let mut tried = least.min(samples);
+        let mut tried = HALVES.min(samples);
         loop {
             let seconds = Run::of(&candidate.trace(job, tried, self.cancel)?).seconds;
             if seconds >= WARM_UP_SECONDS.min(0.25 * limit) || tried >= samples {
-                row.samples_per_pixel = affordable(samples, least, seconds / tried as f64, limit);
+                row.samples_per_pixel = affordable(samples, HALVES, seconds / tried as f64, limit);
                 row.left_out = candidate.start()?.diagnostics().kernel.left_out;
                 return Ok(());
             }

@@ -193,7 +193,7 @@ fn measured(
     // The first picture pays for caches, threads and memory, so trace it off the clock.
     candidate.trace(job, 1, cancel)?;
     let device_begin = candidate.start()?.diagnostics().device_time;
-    let mut film = candidate.new_film(job);
+    let mut film = candidate.new_film(job)?;
     let (mut total, mut wall) = (Stats::default(), Duration::ZERO);
     let mut samples = 1;
     while samples <= most_samples.max(2) {

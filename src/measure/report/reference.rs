@@ -54,7 +54,7 @@ impl ReferencePicture {
 
 /// The job of a reference, or of a picture that is compared with one.
 pub fn job_of(recipe: &Recipe, sampler: SamplerKind, seed: u32) -> Result<RenderJob> {
-    let settings = RenderSettings { sampler, seed, estimate_error: true, ..recipe.settings };
+    let settings = RenderSettings { sampler, seed, ..recipe.settings };
     Ok(Recipe { settings, ..recipe.clone() }.job()?)
 }
 
@@ -66,7 +66,7 @@ mod tests {
     /// The measured error combines those of reference and picture, which are independent.
     #[test]
     fn errors_exclude_reference_error() {
-        let mut film = Film::new(16, 9, 2);
+        let mut film = Film::new(16, 9);
         for (half, radiance) in film.halves_mut().iter_mut().zip([0.25, 0.75]) {
             half.iter_mut().for_each(|sum| sum.add(fixed_point([radiance; 3]).unwrap()));
         }
@@ -75,7 +75,7 @@ mod tests {
         // The mean is 0.5, and the error a quarter of the halves' squared difference.
         let near = |found: f64, expected: f64| (found - expected).abs() < 1e-12;
         assert!(near(reference.used.mse, 0.0625) && near(reference.used.rel_mse, 0.0625 / 0.26));
-        let mut white = Film::new(16, 9, 1);
+        let mut white = Film::new(16, 9);
         white.halves_mut()[0].fill(fixed_point([1.0; 3]).unwrap());
         white.record(0..1, 0).unwrap();
         let [mse, rel_mse] = reference.errors(&white);

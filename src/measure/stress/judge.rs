@@ -170,7 +170,7 @@ mod tests {
 
     /// A film of one row; each half gives its pixels' sums in sixteenths.
     fn row(samples: u64, halves: [&[[f64; 3]]; 2]) -> Film {
-        let mut film = Film::new(halves[0].len() as u32, 1, 2);
+        let mut film = Film::new(halves[0].len() as u32, 1);
         for (half, sums) in halves.into_iter().enumerate() {
             for (pixel, sum) in sums.iter().enumerate() {
                 film.halves_mut()[half][pixel] = fixed_point(sum.map(|x| x / 16.0)).unwrap();
@@ -193,7 +193,7 @@ mod tests {
         assert!(close(level.noise, 1.5 / 16.0), "{level:?}");
         let deviation = (0.5_f64.powi(2) + 1.5_f64.powi(2)).sqrt() / (2.0 * 16.0);
         assert!(close(level.deviation, deviation), "{level:?}");
-        let mut one_half = Film::new(1, 1, 1);
+        let mut one_half = Film::new(1, 1);
         one_half.record(0..1, 0).unwrap();
         assert_eq!(Level::of(&one_half), Level::default());
     }

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::backends::BackendChoice;
 use crate::denoise;
-use crate::film::{Film, PixelSum, SampleRanges};
+use crate::film::{Film, HALVES, PixelSum, SampleRanges};
 use crate::job::render::{Control, Outcome, RenderError, RenderJob, Renderer, Stats};
 use backends::Pending;
 use std::ops::Range;
@@ -83,8 +83,9 @@ impl Render {
         film: Film,
         cancel: Arc<Cancel>,
     ) -> Self {
+        let (smallest, first) = plan.preview.map_or((HALVES, HALVES), |samples| (1, samples));
         let mut render = Render {
-            sizer: PassSizer::new(film.halves().len()).begin_with(plan.preview.unwrap_or(1)),
+            sizer: PassSizer::new(smallest, first),
             next_history_samples: (film.sample_count() + 1).next_power_of_two(),
             estimated_samples: 0,
             estimated_at: Instant::now(),
@@ -245,7 +246,7 @@ impl Render {
         renderer: &mut dyn Renderer,
         range: &mut Range<u64>,
     ) -> Result<Outcome, RenderError> {
-        let fewest = range.start..range.start + self.film.halves().len() as u64;
+        let fewest = range.start..range.start + HALVES;
         if range.end > fewest.end {
             let samples = range.clone();
             let outcome = self.add(renderer, |renderer, job, film, cancel| {
@@ -268,7 +269,7 @@ impl Render {
         let Some(target) = self.plan.first_pass_target() else { return Ok(()) };
         let gap = self.requested.first_gap(self.plan.range(), u64::MAX);
         let wanted = gap.map_or(0, |gap| gap.end - gap.start);
-        if wanted <= self.film.halves().len() as u64 {
+        if wanted <= HALVES {
             return Ok(());
         }
         let begin = Instant::now();
@@ -317,15 +318,9 @@ impl Render {
         self.status.trace += begin.elapsed();
         let added = self.film.sample_count().saturating_sub(held);
         if added > 0 {
-            let (stats, credits) = match &outcome {
-                Ok(Outcome::Added { stats, credits }) => (*stats, credits.as_slice()),
-                _ => (Stats::default(), &[][..]),
-            };
+            let stats = outcome.as_ref().map_or(Stats::default(), |outcome| outcome.stats());
             self.status.stats.add(&stats);
-            credits.iter().for_each(|(info, samples)| self.status.credit(info, *samples));
-            if credits.is_empty() {
-                self.status.credit(&renderer.info(), added);
-            }
+            self.status.credit(&renderer.info(), added);
             self.note_film();
         }
         outcome
@@ -400,7 +395,7 @@ impl Render {
     }
 
     fn estimate_error(&mut self) {
-        if self.estimated_samples != self.film.sample_count() {
+        if self.plan.preview.is_none() && self.estimated_samples != self.film.sample_count() {
             let begin = Instant::now();
             self.status.error = self.film.error();
             if self.plan.stop.noise_of == NoiseOf::Denoised && self.plan.stop.noise.is_some() {

@@ -77,9 +77,7 @@ impl Instructions for Avx2 {
         _mm256_unpacklo_ps, _mm256_unpackhi_ps, _mm256_unpacklo_pd, _mm256_unpackhi_pd,
         _mm256_castps_pd, _mm256_castpd_ps
     }
-    by!(Avx2, to_nearest_4(x: f32x4) -> i32x4, _mm_cvtps_epi32(x.into()));
     by!(Avx2, to_nearest_8(x: f32x8) -> i32x8, _mm256_cvtps_epi32(x.into()));
-    by!(Avx2, ones_4(m: mask32x4) -> u32x4, __m128i::from(m));
     by!(Avx2, ones_8(m: mask32x8) -> u32x8, __m256i::from(m));
 }
 

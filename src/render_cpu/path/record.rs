@@ -24,7 +24,7 @@ pub fn record<L: Lanes>(
 ) -> PathRecord {
     let (context, prepared) = (Context::<L, { parts::ALL }> { l, broadcast }, &broadcast.prepared);
     let blocks = RefillBlock::of_range(index..index + 1, &prepared.settings, 1);
-    let mut sums = vec![PixelSum::default(); prepared.settings.half_count()];
+    let mut sums = [PixelSum::default(); 2];
     let rows = sums.iter_mut().map(std::slice::from_mut).collect();
     let order = RefillOrder::new(1, 1);
     let mut work = Work::new(&blocks, &order, pixel, rows);

@@ -96,10 +96,8 @@ pub fn job_of(
     [width, height]: [u32; 2],
     max_depth: u32,
     sampler: SamplerKind,
-    estimate_error: bool,
 ) -> RenderJob {
     let settings = RenderSettings { width, height, max_depth, sampler, seed: 3, ..RenderSettings::default() };
-    let settings = RenderSettings { estimate_error, ..settings };
     RenderJob::new(scene.clone(), camera, settings, Rules::default()).unwrap()
 }
 
@@ -107,7 +105,6 @@ pub fn job_of(
 pub fn jobs(width: u32, height: u32) -> Vec<(String, RenderJob)> {
     let job = |mut recipe: Recipe| {
         (recipe.settings.width, recipe.settings.height) = (width, height);
-        recipe.settings.estimate_error = false;
         recipe.job().unwrap()
     };
     let stages = Stage::ALL.iter().map(|stage| (format!("stage {}", stage.id), job(stage.recipe())));

@@ -15,7 +15,7 @@ pub fn noise(pixel: usize, sample: u64, channel: usize) -> f64 {
 }
 
 pub fn add(film: &mut Film, pixel: usize, sample: u64, radiance: [f64; 3]) -> bool {
-    let half = (sample % film.halves().len() as u64) as usize;
+    let half = (sample % 2) as usize;
     match fixed_point(radiance) {
         Some(sum) => film.halves_mut()[half][pixel].add(sum),
         None => return false,
@@ -24,8 +24,8 @@ pub fn add(film: &mut Film, pixel: usize, sample: u64, radiance: [f64; 3]) -> bo
 }
 
 /// A film of noise, filled as a renderer would fill it.
-pub fn noisy_film(width: u32, height: u32, halves: usize, ranges: &[Range<u64>]) -> Film {
-    let mut film = Film::new(width, height, halves);
+pub fn noisy_film(width: u32, height: u32, ranges: &[Range<u64>]) -> Film {
+    let mut film = Film::new(width, height);
     for range in ranges {
         for sample in range.clone() {
             for pixel in 0..(width * height) as usize {

@@ -7,7 +7,7 @@ use weekender::film::{Film, PixelSum, ROUNDING_LIMIT, fixed_point};
 fn the_error_is_right_for_halves_of_different_counts() {
     // Noise is uniform in [0, 1) with variance 1/12 per sample. Of three samples, two are in half A.
     for samples in [3, 8, 9] {
-        let error = noisy_film(200, 100, 2, &[0..samples]).error().unwrap();
+        let error = noisy_film(200, 100, &[0..samples]).error().unwrap();
         let expected = (1.0 / 12.0 / samples as f64).sqrt();
         assert!((error.rmse / expected - 1.0).abs() < 0.02, "{samples}: {error:?}, expected {expected}");
     }
@@ -17,20 +17,19 @@ fn the_error_is_right_for_halves_of_different_counts() {
 fn stated_uncertainty_matches_the_spread() {
     // 400 small films with different samples. The own error of each deviates from the expected one as much as its estimate
     // does, so the stated uncertainty of their difference is the root of 2 times the spread of the estimates.
-    let errors: Vec<_> =
-        (0..400).map(|k| noisy_film(16, 12, 2, &[8 * k..8 * k + 8]).error().unwrap()).collect();
+    let errors: Vec<_> = (0..400).map(|k| noisy_film(16, 12, &[8 * k..8 * k + 8]).error().unwrap()).collect();
     let mean = |of: &dyn Fn(usize) -> f64| (0..errors.len()).map(of).sum::<f64>() / errors.len() as f64;
     let middle = mean(&|k| errors[k].rmse);
     let spread = mean(&|k| (errors[k].rmse - middle).powi(2)).sqrt();
     let stated = mean(&|k| errors[k].rmse_deviation);
     let ratio = stated / (std::f64::consts::SQRT_2 * spread);
     assert!((ratio - 1.0).abs() < 0.15, "stated {stated}, estimates spread by {spread}");
-    assert_eq!(Film::new(4, 3, 2).error(), None);
+    assert_eq!(Film::new(4, 3).error(), None);
 }
 
 #[test]
 fn a_film_without_light_has_no_estimate() {
-    let mut black = Film::new(4, 3, 2);
+    let mut black = Film::new(4, 3);
     black.record(0..1, 0).unwrap();
     assert_eq!((black.error(), black.why_no_error()), (None, "only one half has samples"));
     assert!(!black.meets(1.0, None, 0.0));
@@ -38,7 +37,6 @@ fn a_film_without_light_has_no_estimate() {
     assert_eq!((black.error(), black.why_no_error()), (None, "no path has found any light"));
     // The picture cannot be brighter than the light.
     assert!(!black.meets(0.01, None, 1.0) && black.meets(0.01, None, 0.01) && black.meets(0.01, None, 0.0));
-    assert_eq!(Film::new(4, 3, 1).why_no_error(), "the film has one half");
     // One sample in one pixel is enough to tell that there is light.
     add(&mut black, 5, 0, [0.0, 0.0, 0.5]);
     assert!(black.error().is_some());
@@ -59,7 +57,7 @@ fn few_pixels_meet_a_target_with_room_to_spare() {
 
 /// A film of two samples with noise only in its first `noisy` pixels.
 fn film_with_noise_in(pixels: u32, noisy: usize) -> Film {
-    let mut film = Film::new(pixels, 1, 2);
+    let mut film = Film::new(pixels, 1);
     for pixel in 0..pixels as usize {
         let by = if pixel < noisy { 0.5 } else { 0.0 };
         add(&mut film, pixel, 0, [0.5 + by; 3]);
@@ -86,7 +84,7 @@ fn estimates_dominated_by_few_pixels_are_doubted() {
 
 /// A film of samples that are all alike, more of them in the first half if their number is odd.
 fn even_film(radiance: f64, samples: u64) -> Film {
-    let mut film = Film::new(4, 3, 2);
+    let mut film = Film::new(4, 3);
     let PixelSum(one) = fixed_point([radiance; 3]).unwrap();
     for (half, of_half) in film.halves_mut().iter_mut().zip([samples.div_ceil(2), samples / 2]) {
         half.fill(PixelSum(one.map(|k| k * of_half)));
@@ -109,7 +107,7 @@ fn the_error_includes_what_rounding_costs() {
             assert_eq!(error.words(), "3e-8 RMSE, by rounding alone");
         }
     }
-    let noisy = noisy_film(200, 100, 2, &[0..8]).error().unwrap();
+    let noisy = noisy_film(200, 100, &[0..8]).error().unwrap();
     assert!(!noisy.is_without_noise() && noisy.words().ends_with(" % RMSE"), "{}", noisy.words());
 }
 
@@ -125,7 +123,7 @@ fn noise_below_rounding_does_not_count() {
 fn all_channels_count_and_dark_ones_more_in_rel_mse() {
     // Two halves of one sample each, of two pixels.
     let halves = [[[0.75, 0.25, 0.5], [0.0, 1.0, 0.125]], [[0.25, 0.25, 1.0], [0.5, 0.25, 0.0625]]];
-    let mut film = Film::new(2, 1, 2);
+    let mut film = Film::new(2, 1);
     let (mut square, mut relative) = (0.0, 0.0);
     for pixel in 0..2 {
         for (half, sums) in halves.iter().enumerate() {

@@ -13,9 +13,9 @@ fn merged(paths: &[&PathBuf], same_job: fn(&str, &str) -> Result<(), String>) ->
 
 #[test]
 fn rejected_samples_add_up() {
-    let mut film = Film::new(1, 1, 2);
+    let mut film = Film::new(1, 1);
     film.record(0..4, 3).unwrap();
-    let mut other = Film::new(1, 1, 2);
+    let mut other = Film::new(1, 1);
     other.record(4..6, 2).unwrap();
     let directory = tempfile::tempdir().unwrap();
     let paths = ["a.exr", "b.exr"].map(|name| directory.path().join(name));
@@ -29,13 +29,11 @@ fn rejected_samples_add_up() {
 
 #[test]
 fn mismatched_films_are_unchanged() {
-    let mut film = noisy_film(4, 3, 2, &[0..10]);
+    let mut film = noisy_film(4, 3, &[0..10]);
     let before = film.clone();
-    let error = film.merge(&noisy_film(4, 3, 2, &[20..30, 8..12])).unwrap_err();
+    let error = film.merge(&noisy_film(4, 3, &[20..30, 8..12])).unwrap_err();
     assert_eq!(error, FilmError::Overlap { range: 8..10 });
-    for (width, height, halves) in [(3, 4, 2), (4, 3, 1)] {
-        assert!(matches!(film.merge(&Film::new(width, height, halves)), Err(FilmError::Size { .. })));
-    }
+    assert!(matches!(film.merge(&Film::new(3, 4)), Err(FilmError::Size { .. })));
     assert!(film.record(9..11, 5).is_err());
     assert_eq!(film, before);
 }
@@ -49,12 +47,12 @@ fn merged_files_are_the_film_of_one_run() {
             let path = directory.path().join(format!("{}.exr", range.start));
             let mut description = description();
             description.set(key::BACKEND, if range.start == 9 { "gpu" } else { "cpu" });
-            checkpoint::save(&path, &noisy_film(5, 3, 2, &[range]), &description).unwrap();
+            checkpoint::save(&path, &noisy_film(5, 3, &[range]), &description).unwrap();
             path
         })
         .collect();
     let sum = merged(&[&paths[0], &paths[1], &paths[2]], same_recipe_text).unwrap();
-    assert!(*sum.film() == noisy_film(5, 3, 2, &[0..12]));
+    assert!(*sum.film() == noisy_film(5, 3, &[0..12]));
     let of_sum = sum.description();
     assert_eq!(of_sum.get(key::SAMPLES), Some("12"));
     assert_eq!(of_sum.get(key::SECONDS), Some("4.5"));
@@ -63,7 +61,7 @@ fn merged_files_are_the_film_of_one_run() {
 
     // Overlap: the message names both files and the samples.
     let overlapping = directory.path().join("overlapping.exr");
-    checkpoint::save(&overlapping, &noisy_film(5, 3, 2, &[100..101, 10..20]), &description()).unwrap();
+    checkpoint::save(&overlapping, &noisy_film(5, 3, &[100..101, 10..20]), &description()).unwrap();
     let error = merged(&[&paths[0], &paths[1], &overlapping], same_recipe_text).unwrap_err();
     let words = error.to_string();
     for part in ["9.exr", "overlapping.exr", "10..12"] {
@@ -73,13 +71,13 @@ fn merged_files_are_the_film_of_one_run() {
     // Different jobs, different sizes.
     let stranger = directory.path().join("stranger.exr");
     let recipe = RECIPE.replace("width = 7", "width = 8");
-    checkpoint::save(&stranger, &noisy_film(5, 3, 2, &[50..51]), &Description::new(&recipe)).unwrap();
+    checkpoint::save(&stranger, &noisy_film(5, 3, &[50..51]), &Description::new(&recipe)).unwrap();
     let error = merged(&[&paths[0], &stranger], same_recipe_text).unwrap_err().to_string();
     assert!(error.contains("stranger.exr") && error.contains("`width = 7`") && error.contains("`width = 8`"));
     let trusting = merged(&[&paths[0], &stranger], |_, _| Ok(())).unwrap();
     assert_eq!(trusting.film().sample_count(), 5);
     assert_eq!(trusting.description().get(key::SAMPLES), Some("5"), "with a gap");
-    checkpoint::save(&stranger, &noisy_film(3, 5, 2, &[50..51]), &description()).unwrap();
+    checkpoint::save(&stranger, &noisy_film(3, 5, &[50..51]), &description()).unwrap();
     let error = merged(&[&paths[0], &stranger], same_recipe_text).unwrap_err();
     assert!(matches!(error.downcast_ref(), Some(FilmError::Size { .. })), "{error:#}");
 }
@@ -89,8 +87,8 @@ fn merged_files_are_the_film_of_one_run() {
 fn merged_time_is_unknown_if_any_is() {
     let directory = tempfile::tempdir().unwrap();
     let paths = ["known.exr", "unknown.exr"].map(|name| directory.path().join(name));
-    checkpoint::save(&paths[0], &noisy_film(2, 2, 2, &[0..2]), &description()).unwrap();
-    checkpoint::save(&paths[1], &noisy_film(2, 2, 2, &[2..4]), &Description::new(RECIPE)).unwrap();
+    checkpoint::save(&paths[0], &noisy_film(2, 2, &[0..2]), &description()).unwrap();
+    checkpoint::save(&paths[1], &noisy_film(2, 2, &[2..4]), &Description::new(RECIPE)).unwrap();
     let mut sum = FilmSum::read(&paths[0]).unwrap();
     assert_eq!(sum.description().get(key::SECONDS), Some("1.5"));
     sum.add(&paths[1], same_recipe_text).unwrap();
@@ -103,7 +101,7 @@ fn damaged_film_leaves_the_sum_unchanged() {
     let directory = tempfile::tempdir().unwrap();
     let path = |name: &str| directory.path().join(name);
     for (name, range) in [("a.exr", 0..2), ("b.exr", 2..4)] {
-        checkpoint::save(&path(name), &noisy_film(3, 400, 2, &[range]), &description()).unwrap();
+        checkpoint::save(&path(name), &noisy_film(3, 400, &[range]), &description()).unwrap();
     }
     let whole = std::fs::read(path("b.exr")).unwrap();
     let mut bytes = whole.clone();
@@ -112,10 +110,8 @@ fn damaged_film_leaves_the_sum_unchanged() {
     let mut sum = FilmSum::read(&path("a.exr")).unwrap();
     let refused = sum.add(&path("b.exr"), same_recipe_text).unwrap_err();
     assert!(matches!(refused.downcast_ref(), Some(CheckpointError::Damaged { .. })), "{refused}");
-    assert!(sum.film() == &noisy_film(3, 400, 2, &[0..2]));
+    assert!(sum.film() == &noisy_film(3, 400, &[0..2]));
     std::fs::write(path("b.exr"), whole).unwrap();
     sum.add(&path("b.exr"), same_recipe_text).unwrap();
-    assert!(
-        sum.film() == &noisy_film(3, 400, 2, &[0..4]) && sum.description().get(key::SECONDS) == Some("3")
-    );
+    assert!(sum.film() == &noisy_film(3, 400, &[0..4]) && sum.description().get(key::SECONDS) == Some("3"));
 }

@@ -23,11 +23,6 @@ type Change = (&'static str, fn(&mut Recipe));
 /// Applied to three scenes; each stage and scene is also rendered as it is.
 const CHANGES: &[Change] = &[
     ("independent", |recipe| recipe.settings.sampler = SamplerKind::Independent),
-    ("independent, one half", |recipe| {
-        recipe.settings.sampler = SamplerKind::Independent;
-        recipe.settings.estimate_error = false;
-    }),
-    ("one half", |recipe| recipe.settings.estimate_error = false),
     ("seed 7", |recipe| recipe.settings.seed = 7),
     ("depth 1", |recipe| recipe.settings.max_depth = 1),
     ("depth 2", |recipe| recipe.settings.max_depth = 2),

@@ -143,9 +143,9 @@ pub fn scene(spheres: &[(DVec3, f64, Material)]) -> Scene {
     scene
 }
 
-/// Settings of a picture of this size, with one half and 50 rays per path.
+/// Settings of a picture of this size, with 50 rays per path.
 pub fn size(width: u32, height: u32) -> RenderSettings {
-    RenderSettings { width, height, max_depth: 50, estimate_error: false, ..RenderSettings::default() }
+    RenderSettings { width, height, max_depth: 50, ..RenderSettings::default() }
 }
 
 pub const NO_ANTIALIASING: Rules = Rules { antialiasing: false, ..Rules::FINISHED };
@@ -225,7 +225,6 @@ pub struct Paired {
 
 /// Renders single samples with both and compares them pixel by pixel.
 pub fn paired(job: &RenderJob, samples: u64, a: &mut CpuRenderer, b: &mut CpuRenderer) -> Paired {
-    assert!(!job.settings().estimate_error, "one half holds all samples");
     let pixels = (job.settings().width * job.settings().height) as usize;
     let paths = (samples * pixels as u64) as f64;
     let mut found = Paired::default();

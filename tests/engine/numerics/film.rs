@@ -3,7 +3,7 @@
 use crate::numerics::common::*;
 use glam::DVec3;
 use weekender::film::Film;
-use weekender::job::render::{RenderJob, RenderSettings};
+use weekender::job::render::RenderJob;
 use weekender::kernel::parts;
 use weekender::prepared::PreparedScene;
 use weekender::render_cpu::broadcast::BroadcastScene;
@@ -60,7 +60,7 @@ fn sums_of_a_bright_sky_do_not_overflow() {
 fn case_25_not_a_number() {
     const SAMPLES: u64 = 4;
     let ball = scene(&[(DVec3::new(0.0, 0.0, -1.0), 0.5, lambertian(0.5))]);
-    let job = sharp_job(&ball, Camera::BOOK, RenderSettings { estimate_error: true, ..size(64, 36) });
+    let job = sharp_job(&ball, Camera::BOOK, size(64, 36));
     let clean = PreparedScene::<f32>::new(&job);
     let mut expected = job.new_film();
     assert_eq!(trace_tables(&clean, &mut expected, 0..SAMPLES).rejected, 0);

@@ -215,7 +215,7 @@ fn hierarchy_and_list_agree() {
 /// The book's final picture with and without the hierarchy.
 #[test]
 fn hierarchy_and_list_render_same_film() {
-    let job = job(&book(), BOOK_CAMERA, RenderSettings { estimate_error: true, ..size(48, 27) });
+    let job = job(&book(), BOOK_CAMERA, size(48, 27));
     let prepared = PreparedScene::<f32>::new(&job);
     assert!(prepared.hierarchy.is_some(), "the book has a hierarchy");
     let mut with = job.new_film();

@@ -209,7 +209,7 @@ fn case_22_mirrors_have_no_noise() {
         (DVec3::new(0.55, 0.0, -1.2), 0.5, mirror(0.7)),
     ]);
     let film = |seed, sampler| {
-        let settings = RenderSettings { seed, sampler, estimate_error: true, ..size(64, 36) };
+        let settings = RenderSettings { seed, sampler, ..size(64, 36) };
         render(&mut widest(), &sharp_job(&scene, Camera::BOOK, settings), 0..8)
     };
     let one = film(0, SamplerKind::Sobol);

@@ -16,8 +16,7 @@ const HEIGHT: u32 = 27;
 const VALUES: usize = (WIDTH * HEIGHT * 3) as usize;
 
 fn three(width: u32, height: u32, sampler: SamplerKind, seed: u32) -> RenderJob {
-    let settings =
-        RenderSettings { sampler, seed, estimate_error: true, max_depth: 24, ..size(width, height) };
+    let settings = RenderSettings { sampler, seed, max_depth: 24, ..size(width, height) };
     job(&three_spheres(LeftSphere::HollowGlass), Camera::BOOK, settings)
 }
 
@@ -64,7 +63,7 @@ fn calibration_jobs(
 ) -> [(&'static str, RenderJob); 4] {
     let of = |name: &'static str, camera: Option<Camera>| {
         let recipe = Recipe::find(name).unwrap();
-        let settings = RenderSettings { sampler, seed, estimate_error: true, ..size(width, height) };
+        let settings = RenderSettings { sampler, seed, ..size(width, height) };
         job(&recipe.scene, camera.unwrap_or(recipe.camera), settings)
     };
     let near = Camera {

@@ -90,8 +90,7 @@ impl Fake {
                 return Err(RenderError::Cancelled);
             }
             std::thread::sleep(self.pause);
-            let half_count = film.halves().len();
-            let half = &mut film.halves_mut()[index as usize % half_count];
+            let half = &mut film.halves_mut()[index as usize % 2];
             half.iter_mut().enumerate().for_each(|(pixel, sum)| sum.add((self.value)(pixel, index)));
         }
         let samples = range.end - range.start;

@@ -4,4 +4,3 @@ mod common;
 mod failures;
 mod handover;
 mod stopping;
-mod together;

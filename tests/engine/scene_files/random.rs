@@ -92,13 +92,13 @@ fn camera() -> impl Strategy<Value = Camera> {
 }
 
 fn recipe() -> impl Strategy<Value = Recipe> {
-    let settings =
-        (1..=16_384_u32, 1..=16_384_u32, 1..=10_000_u32, any::<bool>(), any::<u32>(), any::<bool>())
-            .prop_map(|(width, height, max_depth, is_sobol, seed, estimate_error)| {
-                let sampler = if is_sobol { SamplerKind::Sobol } else { SamplerKind::Independent };
-                let numbers = RenderSettings { width, height, max_depth, seed, ..RenderSettings::default() };
-                RenderSettings { sampler, estimate_error, ..numbers }
-            });
+    let settings = (1..=16_384_u32, 1..=16_384_u32, 1..=10_000_u32, any::<bool>(), any::<u32>()).prop_map(
+        |(width, height, max_depth, is_sobol, seed)| {
+            let sampler = if is_sobol { SamplerKind::Sobol } else { SamplerKind::Independent };
+            let numbers = RenderSettings { width, height, max_depth, seed, ..RenderSettings::default() };
+            RenderSettings { sampler, ..numbers }
+        },
+    );
     let keyframes = prop::collection::btree_map(0..FRAME_LIMIT, camera(), 0..4).prop_map(|cameras| {
         cameras.into_iter().map(|(frame, camera)| Keyframe { frame, camera }).collect::<Vec<_>>()
     });

@@ -91,6 +91,7 @@ fn bad_settings_are_refused() {
         ("render", "seed = -1", 6, "-1 is not between 0 and 4294967295"),
         ("render", "sampler = \"random\"", 6, "`sobol`"),
         ("render", "estimate_error = 1", 6, "expected a boolean"),
+        ("render", "estimate_error = false", 6, "always estimated; remove this line"),
         ("rules", "gravity = true", 6, "unknown key `gravity`"),
         (
             "sky",

@@ -34,13 +34,7 @@ const COUNT: usize = 4096;
 type Words = [u32; PROBE_STRIDE];
 
 fn job(laws: DielectricLaws) -> RenderJob {
-    let settings = RenderSettings {
-        width: 640,
-        height: 360,
-        max_depth: 4,
-        estimate_error: false,
-        ..RenderSettings::default()
-    };
+    let settings = RenderSettings { width: 640, height: 360, max_depth: 4, ..RenderSettings::default() };
     let camera = Camera {
         look_from: DVec3::new(3.0, 2.0, 5.0),
         look_at: DVec3::new(0.0, 0.5, -1.0),

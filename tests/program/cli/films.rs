@@ -46,7 +46,6 @@ fn films_of_other_pictures_are_not_resumed() {
         for (flags, parts) in [
             (&["--size", "16x9"][..], &["height is 9 here, 18 there"][..]),
             (&["--seed", "5"], &["seed is 5"]),
-            (&["--estimate-error", "off"], &["estimate_error is false"]),
             (&["--scene", "book", "--size", "32x18"], &["another picture"]),
         ] {
             refused_in(&directory, &with("film.exr", flags), parts);

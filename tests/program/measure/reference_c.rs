@@ -47,14 +47,16 @@ fn check(name: &str, job: &RenderJob, samples: u64) {
     let half = samples / 2;
     // Each half of the film is a run of its own.
     let halves = [0..half, half..samples].map(|range| {
-        let mut film = Film::new(WIDTH, HEIGHT, 1);
+        let mut film = job.new_film();
         let stats = baseline.accumulate(job, range, &mut film, &go_on).unwrap();
         assert_eq!(stats.paths, half * u64::from(WIDTH * HEIGHT));
         assert!(stats.rays > stats.paths && !stats.trace.is_zero());
         film.halves()[0].clone()
     });
     let range = SampleRanges::from_ranges(std::iter::once(0..samples)).unwrap();
-    let theirs = Film::from_parts(WIDTH, HEIGHT, halves.to_vec(), range, 0).unwrap();
+    let mut theirs = job.new_film();
+    theirs.halves_mut().clone_from_slice(&halves);
+    let theirs = theirs.with_samples(range, 0).unwrap();
     let mut ours = job.new_film();
     CpuRenderer::new(CpuOptions::default()).unwrap().accumulate(job, 0..samples, &mut ours, &go_on).unwrap();
     let side = |film| Picture::of_film(String::new(), String::new(), film);
@@ -93,6 +95,6 @@ fn bad_scenes_and_unsupported_rules_are_refused() {
     let error = baseline.prepare(&stage, &AtomicBool::new(false)).unwrap_err().to_string();
     assert!(error.contains("only the rules of the finished renderer"), "{error}");
     let go_on = AtomicBool::new(true);
-    let cancelled = baseline.accumulate(&job("book"), 0..1 << 20, &mut Film::new(128, 72, 1), &go_on);
+    let cancelled = baseline.accumulate(&job("book"), 0..1 << 20, &mut Film::new(128, 72), &go_on);
     assert!(matches!(cancelled, Err(RenderError::Cancelled)), "{cancelled:?}");
 }

@@ -231,7 +231,7 @@ struct RawSettings {
     max_depth: Option<Whole<1, { DEPTH_LIMIT as i64 }>>,
     sampler: Option<SamplerKind>,
     seed: Option<Whole<0, { u32::MAX as i64 }>>,
-    estimate_error: Option<bool>,
+    estimate_error: Option<Spanned<bool>>,
 }
 
 enum Refusal {
@@ -274,6 +274,9 @@ fn recipe_of<'a>(
     };
     let camera = camera_of(&raw.camera, None)?;
     let (default, own) = (RenderSettings::default(), raw.render);
+    if let Some(value) = own.estimate_error.filter(|value| !value.get_ref()) {
+        return Err(refuse(value.span(), "the error is always estimated; remove this line"));
+    }
     Ok(Recipe {
         name: name.to_owned(),
         scene,
@@ -285,7 +288,6 @@ fn recipe_of<'a>(
             max_depth: own.max_depth.map_or(default.max_depth, |Whole(rays)| rays as u32),
             sampler: own.sampler.unwrap_or(default.sampler),
             seed: own.seed.map_or(default.seed, |Whole(seed)| seed as u32),
-            estimate_error: own.estimate_error.unwrap_or(default.estimate_error),
         },
         rules: raw.rules,
         samples_per_pixel: own

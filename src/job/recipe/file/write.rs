@@ -69,11 +69,11 @@ fn settings(recipe: &Recipe) -> String {
     for Keyframe { frame, camera } in &recipe.keyframes {
         text += &format!("\n[[keyframes]]\nframe = {frame}\n{}", camera_keys(camera));
     }
-    let RenderSettings { width, height, max_depth, sampler, seed, estimate_error } = recipe.settings;
+    let RenderSettings { width, height, max_depth, sampler, seed } = recipe.settings;
     let (samples, sampler) = (recipe.samples_per_pixel, sampler.name());
     text += &format!(
         "\n[render]\nwidth = {width} # pixels\nheight = {height}\nsamples_per_pixel = {samples}\nmax_depth = {max_depth} # \
-         rays of a path\nsampler = \"{sampler}\"\nseed = {seed}\nestimate_error = {estimate_error}\n"
+         rays of a path\nsampler = \"{sampler}\"\nseed = {seed}\n"
     );
     text + &rules(&recipe.rules)
 }

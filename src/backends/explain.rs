@@ -1,5 +1,6 @@
 //! A path step by step: what each ray meets, and how the next ray's direction was chosen.
 
+use crate::film::HALVES;
 use crate::job::render::{RenderJob, RenderSettings};
 use crate::kernel::path_record::PathRecord;
 use crate::kernel::sampling::{HalfKey, SampleBlock};
@@ -81,13 +82,7 @@ pub fn steps(job: &RenderJob, pixel: [u32; 2], index: u64, record: &PathRecord) 
 }
 
 /// Explains one ray of the path, as [`steps`].
-pub fn step(
-    job: &RenderJob,
-    [x, y]: [u32; 2],
-    index: u64,
-    record: &PathRecord,
-    bounce: usize,
-) -> Option<Step> {
+fn step(job: &RenderJob, [x, y]: [u32; 2], index: u64, record: &PathRecord, bounce: usize) -> Option<Step> {
     let ray = record.rays.get(bounce)?;
     let (origin, direction) = (DVec3::from(ray.origin), DVec3::from(ray.direction));
     let hit = ray.hit.map(|hit| {
@@ -103,8 +98,8 @@ pub fn step(
 
 /// The first number that sample `index` draws for its ray `ray`; 0 is the ray from the camera.
 fn coin(settings: &RenderSettings, pixel: u32, index: u64, ray: u32) -> f64 {
-    let (lane, half_count) = (Scalar::<false>, settings.half_count() as u64);
-    let (half, first) = ((index % half_count) as u32, (index / half_count) as u32);
+    let lane = Scalar::<false>;
+    let (half, first) = ((index % HALVES) as u32, (index / HALVES) as u32);
     let (counter, _) = SampleBlock { half, first, count: 1 }.counter(settings);
     let key = rng::sampler_key(lane, HalfKey::new(settings, half), Word(pixel));
     let numbers = rng::numbers(lane, settings, Word(pixel), Word(counter), key, key + Word(ray), false);
