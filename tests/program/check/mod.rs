@@ -70,7 +70,8 @@ fn planted_mistakes_are_named() {
 /// Some mistake is always closer than none, but no mistake turns one scene into another.
 #[test]
 fn other_scene_gets_only_guesses() {
-    let finding = judge(&mine("lambertian-gamma", "", 30, 7), Stage::find("hollow-glass").ok(), |_| {}).unwrap();
+    let finding =
+        judge(&mine("lambertian-gamma", "", 30, 7), Stage::find("hollow-glass").ok(), |_| {}).unwrap();
     assert!(!finding.is_sure, "{:?}", ids(&finding));
 }
 
