@@ -9,7 +9,7 @@ use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
 use crate::system::files::STANDARD;
 use anyhow::Result;
-use clap::builder::{BoolishValueParser, PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Arg, Args, Command, Error, ValueHint};
 use glam::DVec3;
 use std::ffi::{OsStr, OsString};

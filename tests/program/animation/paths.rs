@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use std::f64::consts::TAU;
-use weekender::scene::Camera;
 use weekender::batch::FrameNames;
+use weekender::scene::Camera;
 use weekender::scene::animation::{CameraPath, Keyframe};
 
 fn camera() -> Camera {
