@@ -90,18 +90,18 @@ impl Progressive {
         let shared = Arc::new(Shared::default());
         let readers = Arc::clone(&shared);
         let mut worker = Worker::new(receiver, Arc::clone(&shared), factory);
-        if !has_thread {
-            let here = Some(Mutex::new(worker));
-            return Ok(Progressive { commands, shared, run: 0, cancel: Arc::default(), thread: None, here });
+        let (mut thread, mut here) = (None, None);
+        if has_thread {
+            let work = move || {
+                if catch_unwind(AssertUnwindSafe(|| worker.run())).is_err() {
+                    readers.died();
+                }
+            };
+            thread = Some(thread::Builder::new().name("render".to_owned()).spawn(work)?);
+        } else {
+            here = Some(Mutex::new(worker));
         }
-        let work = move || {
-            if catch_unwind(AssertUnwindSafe(|| worker.run())).is_err() {
-                readers.died();
-            }
-        };
-        let thread = thread::Builder::new().name("render".to_owned()).spawn(work)?;
-        let thread = Some(thread);
-        Ok(Progressive { commands, shared, run: 0, cancel: Arc::default(), thread, here: None })
+        Ok(Progressive { commands, shared, run: 0, cancel: Arc::default(), thread, here })
     }
 
     /// Starts a render. One in progress is abandoned in the middle of its pass.

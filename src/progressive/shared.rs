@@ -69,11 +69,8 @@ impl Shared {
 
     /// Records that the render thread has died.
     pub(super) fn died(&self) {
-        let mut status = lock(&self.status);
-        status.phase = Phase::Failed("the render thread failed; its film is lost".to_owned());
-        self.changed.notify_all();
-        drop(status);
-        self.give_notice();
+        let phase = Phase::Failed("the render thread failed; its film is lost".to_owned());
+        self.publish(&Status { phase, ..self.status() });
     }
 
     pub(super) fn take_picture(&self) -> Option<Picture> {

@@ -1,6 +1,6 @@
 //! The render thread: it alternates between obeying commands and rendering passes.
 
-use super::render::{Backend, Cancel, Render, dismiss, guarded};
+use super::render::{Backend, Cancel, Render, dismiss};
 use super::shared::Shared;
 use super::{EndReason, Factory, Phase, Plan, RenderRequest, Status, View};
 use crate::backends::BackendChoice;
@@ -84,11 +84,7 @@ impl Worker {
 
     fn show(&mut self) {
         if let Some(render) = &mut self.render {
-            let shown = guarded("the picture", || {
-                render.show(&self.shared, &self.view);
-                Ok(())
-            });
-            render.complain(shown);
+            render.watched("the picture", |render| render.show(&self.shared, &self.view));
         }
     }
 
@@ -120,11 +116,7 @@ impl Worker {
             RenderCommand::Switch(choice) => render.switch(choice, &self.factory),
             RenderCommand::SetPlan(plan) => render.set_plan(plan),
             RenderCommand::Inspect(look) => {
-                let looked = guarded("inspecting the film", || {
-                    look(&render.film);
-                    Ok(())
-                });
-                render.complain(looked);
+                render.watched("inspecting the film", |render| look(&render.film));
             }
             _ => {}
         }

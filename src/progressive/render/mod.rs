@@ -174,8 +174,12 @@ impl Render {
         outcome
     }
 
-    /// Reports a problem that does not affect the film.
-    pub fn complain(&mut self, outcome: Result<(), RenderError>) {
+    /// Runs `look`, which does not affect the film, and reports its panic.
+    pub fn watched(&mut self, what: &'static str, look: impl FnOnce(&mut Self)) {
+        let outcome = guarded(what, || {
+            look(self);
+            Ok(())
+        });
         self.status.say(outcome.err().map(|error| error.to_string()));
     }
 
