@@ -8,21 +8,6 @@ use weekender::app::Command;
 use weekender::stages::Stage;
 
 #[test]
-fn a_slider_drag_is_one_undo_step() {
-    let mut harness = opened();
-    let metal = metal_sphere(&harness);
-    select(&mut harness, metal);
-    harness.run_steps(90);
-    let before = material(&harness, metal);
-    let slider = control(&harness, "Fuzz").rect();
-    drag_from(&mut harness, slider.left_center() + egui::vec2(4.0, 0.0), egui::vec2(80.0, 0.0));
-    let after = material(&harness, metal);
-    assert!(after.effective_fuzz() > 0.2, "{after:?}");
-    send(&mut harness, Command::Undo);
-    assert_eq!(material(&harness, metal), before);
-}
-
-#[test]
 fn spheres_are_added_copied_deleted_and_brought_back() {
     let mut harness = opened();
     let first = spheres(&harness);

@@ -202,7 +202,6 @@ impl Toast {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eframe::egui::pos2;
 
     #[test]
     fn there_is_one_message_of_a_kind_and_the_newest_is_the_last() {
@@ -223,49 +222,5 @@ mod tests {
         toasts.end_error("Not saved");
         toasts.withdraw(Command::StopSaving);
         assert_eq!(texts(&toasts), ["Not opened: c", "last"]);
-    }
-
-    #[test]
-    fn at_most_two_messages_are_drawn_and_hidden_ones_come_back() {
-        let mut toasts = Toasts::default();
-        ["a: 1", "b: 2", "c: 3"].into_iter().for_each(|text| toasts.bad(text));
-        let drawn = |toasts: &mut Toasts| {
-            let context = egui::Context::default();
-            let over = Rect::from_min_size(pos2(0.0, 0.0), vec2(600.0, 400.0));
-            context
-                .run_ui(egui::RawInput::default(), |ui| toasts.ui(ui, over, &mut Vec::new()))
-                .textures_delta
-                .clear();
-            let is_drawn = |toast: &&Toast| toast.place.is_some();
-            toasts.0.iter().filter(is_drawn).map(|toast| toast.text.clone()).collect::<Vec<_>>()
-        };
-        assert_eq!(drawn(&mut toasts), ["b: 2", "c: 3"]);
-        toasts.end_error("b");
-        assert_eq!(drawn(&mut toasts), ["a: 1", "c: 3"]);
-    }
-
-    #[test]
-    fn errors_stay_and_nothing_moves() {
-        let mut toasts = Toasts::default();
-        toasts.good("old");
-        toasts.bad("failed");
-        let context = egui::Context::default();
-        let over = Rect::from_min_size(pos2(0.0, 0.0), vec2(600.0, 400.0));
-        let draw = |toasts: &mut Toasts| {
-            context
-                .run_ui(egui::RawInput::default(), |ui| toasts.ui(ui, over, &mut Vec::new()))
-                .textures_delta
-                .clear();
-        };
-        draw(&mut toasts);
-        let before = toasts.0[1].place;
-        for toast in &mut toasts.0 {
-            toast.since = Instant::now().checked_sub(Duration::from_secs(60)).unwrap();
-        }
-        draw(&mut toasts);
-        assert_eq!(toasts.texts().collect::<Vec<_>>(), ["failed"]);
-        assert!(
-            before.is_some_and(|(at, _)| at > 16.0) && toasts.0[0].place.map(|p| p.0) == before.map(|p| p.0)
-        );
     }
 }

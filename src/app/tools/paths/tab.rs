@@ -144,25 +144,3 @@ fn figures(path: &Path, at: usize) -> String {
     }
     lines.join("\n")
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::app::tests::dressed;
-    use crate::app::tools::paths::tests::listed;
-    use egui_kittest::kittest::Queryable;
-
-    #[test]
-    fn buttons_go_through_paths_and_points() {
-        let (_, paths) = listed("metal", [16, 9]);
-        let mut harness =
-            dressed([800.0, 240.0]).build_ui_state(|ui, paths| super::Paths::ui(paths, ui), paths);
-        for (name, expected) in
-            [("Next path", [2, 2]), ("Previous path", [1, 2]), ("from the camera", [1, 1])]
-        {
-            harness.get_by_label_contains(name).click();
-            harness.run_steps(3);
-            let [path, point, _] = harness.state().position().unwrap();
-            assert_eq!([path, point], expected, "{name}");
-        }
-    }
-}
