@@ -30,7 +30,7 @@ cargo about generate --locked --offline --fail --target "$target" "${features[@]
     --config assets/package/about.toml --output-file "$package/texts/LICENSES-OF-LIBRARIES.txt" assets/package/about.hbs
 
 assets/package/cross.sh web
-cargo run --release --locked -p companion -- --out "$package/companion"
+cargo run --release --locked "${features[@]}" -p companion -- --out "$package/companion"
 cp -r target/release/weekender "$package/companion" README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE "$root"
 cp -r "$package/texts/." "$root"
 if [ ${#features[@]} -eq 0 ]; then

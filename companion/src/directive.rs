@@ -7,7 +7,6 @@ use crate::picture::Picture;
 use crate::pictures;
 use crate::prose::Place;
 use crate::site::Site;
-use crate::stills::has_few_pixels;
 use crate::timeline;
 use crate::uses::Uses;
 use crate::words::{numbered, typographic};
@@ -62,6 +61,10 @@ pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) ->
     }
 }
 
+/// Pictures narrower than this are enlarged with every pixel a square. (A reduced picture must not be shown so: its edges
+/// would become jagged.)
+const FEW_PIXELS: u32 = 100;
+
 /// A panel's picture with the switch and the sliders that the script adds. `small` is for narrow windows; the panel is
 /// then the page's first.
 pub fn panel(
@@ -78,7 +81,7 @@ pub fn panel(
         (format!("figures/{}.png", stage.id), [stage.setup.width, stage.setup.height]);
     html! {
         div .panel id=[id] data-stage=(stage.id) {
-            div .live-frame { img .pixels[has_few_pixels(stage)] src=(file) width=(width) height=(height) alt=(stage.alt)
+            div .live-frame { img .pixels[width < FEW_PIXELS] src=(file) width=(width) height=(height) alt=(stage.alt)
                 loading=[small.is_none().then_some("lazy")] fetchpriority=[small.map(|_| "high")]
                 srcset=[small.map(|small| format!("{}, {file} {width}w", small.candidate()))]
                 sizes=[small.map(|_| "(max-width: 40rem) 14rem, 70rem")]; }

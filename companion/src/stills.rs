@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 use weekender::batch::{Event, Studio};
-use weekender::film::{SOFTWARE, key};
+use weekender::film::SOFTWARE;
 use weekender::job::output::write_small_png;
 use weekender::job::recipe::Recipe;
 use weekender::job::saved::is_whole_frame;
@@ -32,20 +32,11 @@ const FULL_WIDTH: u32 = 800;
 /// Samples per pixel of a full still. The estimated error is then at most 0.003, about half an 8-bit step.
 const FULL_SAMPLES: u64 = 1024;
 
-/// Stills narrower than this are enlarged.
-const FEW_PIXELS: u32 = 100;
-
 /// Interval of progress lines without a terminal.
 const LINE_INTERVAL: Duration = Duration::from_secs(5);
 
 /// The progress bar, which counts paths.
 const TEMPLATE: &str = "[{bar:24}] {eta} left, {wide_msg}";
-
-/// Whether the still of the stage must be enlarged with every pixel a square. (A reduced still must not be shown so: its
-/// edges would become jagged.)
-pub fn has_few_pixels(stage: &Stage) -> bool {
-    stage.setup.width < FEW_PIXELS
-}
 
 /// The stage's own recipe with the size and samples of a still.
 fn recipe(stage: &Stage, is_quick: bool) -> Recipe {
@@ -202,12 +193,7 @@ impl<'a> Work<'a> {
         }
         let Some(film) = film.filter(|film| film.sample_count() >= planned) else { return Ok(false) };
         let _writing = self.interrupt.while_writing(path.display().to_string());
-        let mut description = describe(recipe, Some(stage), &film, &status, Some(0.0));
-        let error = film.error().filter(|error| error.rmse > 0.0).map(|error| {
-            let share = (100.0 * error.rmse_deviation / error.rmse).max(0.1);
-            format!("{:.1e} ± {share:.1} %", error.rmse)
-        });
-        description.set(key::ERROR, error.unwrap_or_else(|| "no noise".to_owned()));
+        let description = describe(recipe, Some(stage), &film, &status, Some(0.0));
         write_small_png(path, &film, recipe.rules.transfer, &description)?;
         Ok(true)
     }

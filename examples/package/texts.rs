@@ -51,7 +51,7 @@ fn lasting(name: &str) -> &'static str {
 fn completed_argument(argument: &Arg) -> Arg {
     let levels = || ["auto"].into_iter().chain(Isa::ALL.map(Isa::name));
     let values: ValueParser = match argument.get_id().as_str() {
-        "stage" | "only" => PossibleValuesParser::new(Stage::ALL.iter().map(|stage| stage.id)).into(),
+        "stage" => PossibleValuesParser::new(Stage::ALL.iter().map(|stage| stage.id)).into(),
         "isa" => PossibleValuesParser::new(levels()).into(),
         "simd" => PossibleValuesParser::new(["auto", "off", "4", "8", "16"]).into(),
         _ => argument.get_value_parser().clone(),
