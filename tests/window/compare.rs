@@ -1,7 +1,7 @@
 //! One picture, traced by two devices.
 
 use crate::common::gpu::has_adapter;
-use crate::harness::{has_samples, open_sized, send, until, window_of_new_user};
+use crate::harness::{has_samples, open_sized, send, sized, until, window_of_new_user};
 use crate::questions::Ask as _;
 use eframe::egui::Key;
 use egui_kittest::Harness;
@@ -76,10 +76,7 @@ fn two_devices_are_compared_in_numbers() {
 #[test]
 fn the_film_stays_when_devices_are_compared() {
     let window = window_of_new_user("--stage glass-schlick --device cpu --samples 32");
-    let mut harness = Harness::builder()
-        .with_size([1000.0, 700.0])
-        .with_step_dt(1.0 / 60.0)
-        .build_ui_state(|ui, window: &mut Window| window.ui_in(ui), window);
+    let mut harness = sized(window, [1000.0, 700.0]);
     until(&mut harness, "the end", |window| window.status().phase.is_over() && has_samples(32)(window));
     harness.run_steps(3);
     let run = harness.state().status().run;

@@ -36,9 +36,16 @@ pub fn open_sized(arguments: &str, size: [f32; 2]) -> Harness<'static, Window> {
     sized(window(arguments), size)
 }
 
-fn sized(window: Window, size: [f32; 2]) -> Harness<'static, Window> {
+/// A window of this size in points.
+pub fn sized(window: Window, size: [f32; 2]) -> Harness<'static, Window> {
+    scaled(window, size, 1.0)
+}
+
+/// A window of this size in points, each of which has `scale` pixels.
+pub fn scaled(window: Window, size: [f32; 2], scale: f32) -> Harness<'static, Window> {
     Harness::builder()
         .with_size(size)
+        .with_pixels_per_point(scale)
         .with_step_dt(1.0 / 60.0)
         .build_ui_state(|ui, window: &mut Window| window.ui_in(ui), window)
 }
@@ -75,6 +82,19 @@ pub fn until_seen(harness: &mut Harness<'_, Window>, text: &str) {
         std::thread::sleep(Duration::from_millis(2));
         harness.step();
     }
+}
+
+/// The mean of a pixel, which the pointer asks for.
+pub fn mean(harness: &mut Harness<'_, Window>, at: [u32; 2]) -> [f64; 3] {
+    let (rect, size) = (harness.state().picture_rect(), harness.state().shown_document().size());
+    let share = |axis: usize| (at[axis] as f32 + 0.5) / size[axis] as f32;
+    harness.hover_at(rect.lerp_inside(vec2(share(0), share(1))));
+    until(harness, "the pixel's value", |window| window.inspected().is_some_and(|(pixel, _)| pixel == at));
+    for _ in 0..20 {
+        std::thread::sleep(Duration::from_millis(2));
+        harness.step();
+    }
+    harness.state().inspected().unwrap().1
 }
 
 /// The picture that a command for the clipboard holds, after at most this many frames.

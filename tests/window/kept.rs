@@ -1,8 +1,10 @@
 //! Pictures that are kept.
 
-use crate::harness::{SMALL, drag_from, has_samples, middle, name_file, open, save, scroll, send, until};
+use crate::harness::{
+    SMALL, drag_from, has_samples, mean, middle, name_file, open, save, scroll, send, until,
+};
 use crate::questions::Ask as _;
-use eframe::egui::{Key, vec2};
+use eframe::egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Window};
@@ -36,20 +38,6 @@ fn change(harness: &mut Harness<'_, Window>) {
     harness.state_mut().document_mut().camera.vfov_degrees = 25.0;
     harness.run_steps(2);
     until(harness, "the changed picture", is_done);
-}
-
-/// The mean of the pixel on the screen, which the pointer asks for.
-fn mean(harness: &mut Harness<'_, Window>) -> [f64; 3] {
-    let rect = harness.state().picture_rect();
-    let size = harness.state().shown_document().size();
-    let share = |axis: usize| (AT[axis] as f32 + 0.5) / size[axis] as f32;
-    harness.hover_at(rect.lerp_inside(vec2(share(0), share(1))));
-    until(harness, "the pixel's value", |window| window.inspected().is_some_and(|(at, _)| at == AT));
-    for _ in 0..20 {
-        std::thread::sleep(std::time::Duration::from_millis(2));
-        harness.step();
-    }
-    harness.state().inspected().unwrap().1
 }
 
 fn in_8_bits(mean: [f64; 3], stops: f64) -> [u8; 3] {
@@ -91,11 +79,11 @@ fn a_kept_picture_shields_the_traced_one() {
 #[test]
 fn a_kept_picture_stays_as_it_was() {
     let mut harness = finished(8);
-    let kept = mean(&mut harness);
+    let kept = mean(&mut harness, AT);
     keep(&mut harness);
     assert_eq!(harness.state().kept()[0].1, 8);
     change(&mut harness);
-    let live = mean(&mut harness);
+    let live = mean(&mut harness, AT);
     assert_ne!(in_8_bits(kept, 0.0), in_8_bits(live, 0.0));
 
     harness.key_press(Key::J);

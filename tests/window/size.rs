@@ -1,6 +1,6 @@
 //! The size of the picture: that of the viewport, the book's, or its own.
 
-use crate::harness::{has_samples, send, until, window_of_new_user};
+use crate::harness::{has_samples, scaled, send, sized, until, window_of_new_user};
 use crate::questions::Ask as _;
 use eframe::egui::{self, Key};
 use egui_kittest::Harness;
@@ -11,19 +11,9 @@ use weekender::app::{Command, Window};
 /// A cheap picture that follows the viewport.
 const FOLLOWING: &str = "--stage normals --samples 2";
 
-fn sized(window: Window, size: [f32; 2], scale: f32) -> Harness<'static, Window> {
-    let mut harness = Harness::builder()
-        .with_size(size)
-        .with_pixels_per_point(scale)
-        .with_step_dt(1.0 / 60.0)
-        .build_ui_state(|ui, window: &mut Window| window.ui_in(ui), window);
-    harness.run_steps(2);
-    harness
-}
-
 /// A window of this size, in points, whose picture follows the viewport.
 fn following(arguments: &str, size: [f32; 2]) -> Harness<'static, Window> {
-    sized(window_of_new_user(arguments), size, 1.0)
+    sized(window_of_new_user(arguments), size)
 }
 
 fn size(harness: &Harness<'_, Window>) -> [u32; 2] {
@@ -55,7 +45,7 @@ fn fills_the_viewport(harness: &Harness<'_, Window>, scale: f32) {
 #[test]
 fn the_picture_fills_the_viewport_at_its_own_resolution() {
     for (points, scale) in [([1000.0, 500.0], 1.0), ([1000.0, 900.0], 1.0), ([1000.0, 600.0], 2.0)] {
-        let mut harness = sized(window_of_new_user(FOLLOWING), points, scale);
+        let mut harness = scaled(window_of_new_user(FOLLOWING), points, scale);
         settle(&mut harness);
         until(&mut harness, "the end", has_samples(2));
         fills_the_viewport(&harness, scale);

@@ -1,8 +1,7 @@
 //! Exposure, luminance in false colours, and denoising.
 
-use crate::harness::{SMALL, open, save, send, until, until_seen};
+use crate::harness::{SMALL, mean, open, save, send, until, until_seen};
 use crate::questions::Ask as _;
-use eframe::egui::vec2;
 use egui_kittest::Harness;
 use weekender::app::{Command, Show, Window};
 use weekender::film::{key, to_byte};
@@ -20,19 +19,10 @@ fn finished() -> Harness<'static, Window> {
     harness
 }
 
-/// The mean of the pixel, which the pointer asks for.
-fn mean(harness: &mut Harness<'_, Window>) -> [f64; 3] {
-    let rect = harness.state().picture_rect();
-    let share = |at: u32, size: f32| (at as f32 + 0.5) / size;
-    harness.hover_at(rect.lerp_inside(vec2(share(AT[0], 32.0), share(AT[1], 18.0))));
-    until(harness, "the pixel's value", |window| window.inspected().is_some_and(|(at, _)| at == AT));
-    harness.state().inspected().unwrap().1
-}
-
 #[test]
 fn exposure_is_seen_but_not_saved() {
     let mut harness = finished();
-    let mean = mean(&mut harness);
+    let mean = mean(&mut harness, AT);
     let transfer = harness.state().shown_document().rules().transfer;
     let seen = |stops: f64| mean.map(|x| to_byte(x * stops.exp2(), transfer, AT[1] as usize, 18));
     assert_eq!(harness.state().shown_pixel(AT), Some(seen(0.0)));
@@ -53,7 +43,7 @@ fn exposure_is_seen_but_not_saved() {
 #[test]
 fn luminance_has_the_colours_of_its_scale() {
     let mut harness = finished();
-    let [red, green, blue] = mean(&mut harness);
+    let [red, green, blue] = mean(&mut harness, AT);
     send(&mut harness, Command::Show(Show::Luminance));
     assert!(harness.state().disabled_reason(Command::Brighter).is_some());
     let luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
@@ -71,7 +61,7 @@ fn a_denoised_picture_is_shown_measured_and_saved() {
     send(&mut harness, Command::Denoise);
     until(&mut harness, "the denoised picture", |window| shown(window) != raw);
     until_seen(&mut harness, "denoised: error");
-    let mean = mean(&mut harness);
+    let mean = mean(&mut harness, AT);
     let transfer = harness.state().shown_document().rules().transfer;
     let seen = mean.map(|x| to_byte(x, transfer, AT[1] as usize, 18));
     assert_eq!(harness.state().shown_pixel(AT), Some(seen), "the panel tells the denoised pixel");
