@@ -1,6 +1,6 @@
 //! The films and the picture of a render: locked and checked before it begins, and written at its end.
 
-use super::options::{BatchOptions, Output};
+use super::{BatchOptions, Output};
 use crate::denoise::{self, DenoisedError};
 use crate::film::{Description, Film, LockedFilm, SampleRanges, key};
 use crate::job::output::{OutputFormat, write_image_as};

@@ -1,27 +1,67 @@
 //! `--frames`: the frames of an animation. Each is written as soon as it is rendered, and complete ones are kept, so
 //! the same command continues an interrupted run.
 
-use super::options::FramesOptions;
-use super::progress::display;
+use super::picture::display;
 use super::studio::{Event, Studio};
 use super::{Line, ended, report};
+use crate::backends::BackendChoice;
 use crate::film::key;
 use crate::job::output::write_image;
 use crate::job::recipe::Recipe;
+use crate::job::render::RenderJob;
 use crate::job::saved::is_whole_frame;
 use crate::progressive::Phase;
 use crate::progressive::describe::{SOFTWARE, counted, describe, seconds};
+use crate::scene::animation::CameraPath;
+use crate::stages::Stage;
 use crate::system::console;
 use crate::system::failure::Failure;
 use crate::system::files::{ShownPath, check_writable, make_directory};
 use crate::system::interrupt::Interrupt;
 use crate::system::journal;
-use crate::system::terminal::Display;
-use anyhow::anyhow;
+use crate::system::terminal::{Display, ProgressChoice};
+use anyhow::{Context, Result, anyhow};
 use serde_json::{Value, json};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
+
+/// Options of `--batch --frames`.
+#[derive(Debug)]
+pub struct FramesOptions {
+    /// The scene and its settings. Each frame replaces its camera.
+    pub recipe: Recipe,
+    /// The validated job of the recipe.
+    pub job: RenderJob,
+    /// The stage that it comes from.
+    pub stage: Option<&'static Stage>,
+    /// How the camera moves. The camera of every frame is valid.
+    pub path: CameraPath,
+    /// Numbers of the frames, at least one.
+    pub frames: Range<u32>,
+    /// The files of the frames.
+    pub names: FrameNames,
+    pub backend: BackendChoice,
+    pub progress: ProgressChoice,
+    pub json: Option<PathBuf>,
+    /// The command line, as files record it; `None` in the window.
+    pub command: Option<String>,
+}
+
+impl FramesOptions {
+    /// Checks the camera of every frame.
+    ///
+    /// # Errors
+    /// The first frame that cannot be rendered, and why.
+    pub fn check(&self) -> Result<()> {
+        let FramesOptions { job, path, frames, .. } = self;
+        for frame in frames.clone() {
+            job.seen_by(path.camera(frame), *job.settings()).with_context(|| format!("frame {frame}"))?;
+        }
+        Ok(())
+    }
+}
 
 /// Renders the missing frames. A signal drops the frame in progress.
 ///
@@ -225,4 +265,38 @@ fn broken_off(error: anyhow::Error, frame: u32, done: u32) -> Failure {
     let context =
         format!("frame {frame} failed; {done} before it are kept; run the same command again to continue");
     Failure::BrokeOff(error.context(context))
+}
+
+/// Where an animation's frames are: a directory, and a name with a place for the number.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FrameNames {
+    pub directory: PathBuf,
+    before: String,
+    /// Minimum number of digits.
+    digits: usize,
+    after: String,
+}
+
+impl FrameNames {
+    /// Names from a pattern such as `shots/turn-####.png`, whose `#` signs stand for the number and its minimum digits.
+    /// `None` unless the file name has exactly one run of them.
+    pub fn of_pattern(pattern: &Path) -> Option<FrameNames> {
+        let name = pattern.file_name()?.to_str()?;
+        let (before, rest) = name.split_once('#')?;
+        let after = rest.trim_start_matches('#');
+        if after.contains('#') {
+            return None;
+        }
+        Some(FrameNames {
+            directory: pattern.parent().map(Path::to_owned).unwrap_or_default(),
+            before: before.to_owned(),
+            digits: name.len() - before.len() - after.len(),
+            after: after.to_owned(),
+        })
+    }
+
+    pub fn path(&self, frame: u32) -> PathBuf {
+        let FrameNames { directory, before, digits, after } = self;
+        directory.join(format!("{before}{frame:0digits$}{after}"))
+    }
 }

@@ -6,38 +6,78 @@ pub mod merge;
 mod files;
 mod frames;
 mod keeping;
-mod options;
 mod picture;
-mod progress;
 mod studio;
 mod summary;
 
-pub use frames::{render_frames, write_frames};
-pub use options::{BatchOptions, FrameNames, FramesOptions, Output};
+pub use frames::{FrameNames, FramesOptions, render_frames, write_frames};
 pub use studio::{Event, Studio};
 pub use summary::{Line, aligned, lines};
 
-use crate::backends;
+use crate::backends::{self, BackendChoice};
 use crate::film::{CheckpointError, Film};
 use crate::job::output::OutputFormat;
 use crate::job::recipe::{Recipe, file};
+use crate::job::render::RenderJob;
 use crate::job::saved::{self, OpenError, SavedFilm};
-use crate::progressive::{EndReason, Phase, Status};
+use crate::progressive::{EndReason, Phase, Plan, Status};
 use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
 use crate::system::console;
 use crate::system::failure::Failure;
 use crate::system::files::{STANDARD, ShownPath, check_replaceable, check_writable, write_text};
 use crate::system::interrupt::Interrupt;
-use crate::system::terminal::{self, print, print_beside};
+use crate::system::terminal::{self, ProgressChoice, print, print_beside};
 use anyhow::Context;
 use files::Files;
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
 use summary::Summary;
+
+/// Options of `--batch`.
+#[derive(Clone, Debug)]
+pub struct BatchOptions {
+    pub recipe: Recipe,
+    /// The validated job of the recipe.
+    pub job: RenderJob,
+    /// The stage that it comes from.
+    pub stage: Option<&'static Stage>,
+    /// Which samples, and when to stop.
+    pub plan: Plan,
+    /// Whether the picture is denoised.
+    pub denoise: bool,
+    /// The files of the picture and of its film, in the order in which they are written: a film is worth most.
+    pub outputs: Vec<Output>,
+    /// Interval at which the checkpoint is written.
+    pub every: Duration,
+    /// The film to resume.
+    pub resume: Option<PathBuf>,
+    /// A scene file to write as well.
+    pub save_scene: Option<PathBuf>,
+    pub backend: BackendChoice,
+    pub progress: ProgressChoice,
+    pub json: Option<PathBuf>,
+    /// The command line, as files record it.
+    pub command: String,
+}
+
+/// A file of a picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Output {
+    pub path: PathBuf,
+    pub format: OutputFormat,
+    /// Whether it is written at intervals, too, and replaces only the film that the render continues.
+    pub is_checkpoint: bool,
+}
+
+impl BatchOptions {
+    pub fn checkpoint(&self) -> Option<&Path> {
+        self.outputs.iter().find(|output| output.is_checkpoint).map(|output| output.path.as_path())
+    }
+}
 
 /// Renders and writes everything that the options ask for.
 ///

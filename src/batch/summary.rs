@@ -1,6 +1,6 @@
 //! The final figures of a run: lines for people, and the same figures as JSON.
 
-use super::options::BatchOptions;
+use super::BatchOptions;
 use crate::denoise::DenoisedError;
 use crate::progressive::describe::seconds;
 use crate::progressive::{Phase, Status};

@@ -1,6 +1,6 @@
 //! Adapters: what they are, what they can do, and which comes first.
 
-use crate::system::foreign;
+use crate::system::foreign::Captured;
 use std::fmt;
 use std::sync::OnceLock;
 
@@ -153,7 +153,9 @@ fn adapters_of(backends: wgpu::Backends) -> Vec<(AdapterInfo, wgpu::Adapter)> {
     if backends.is_empty() {
         return Vec::new();
     }
-    let found = foreign::logged(|| pollster::block_on(instance(backends).enumerate_adapters(backends)));
+    // Drivers print messages of their own.
+    let _captured = Captured::begin();
+    let found = pollster::block_on(instance(backends).enumerate_adapters(backends));
     found.into_iter().map(|adapter| (AdapterInfo::of(&adapter), adapter)).collect()
 }
 

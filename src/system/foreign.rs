@@ -1,12 +1,5 @@
 //! Keeps what libraries print on standard error apart from the program's own messages.
 
-/// Runs `work`, during which graphics drivers may print messages of their own, such as "error: XDG_RUNTIME_DIR is
-/// invalid" on a server, which would look like the program's own. They go to the log instead.
-pub fn logged<T>(work: impl FnOnce() -> T) -> T {
-    let _captured = Captured::begin();
-    work()
-}
-
 /// Standard error is redirected until this is dropped.
 #[derive(Debug)]
 pub struct Captured {
@@ -15,8 +8,9 @@ pub struct Captured {
 }
 
 impl Captured {
-    /// Begins to redirect standard error; [`console`](super::console) still reaches the original. Does nothing on
-    /// systems other than Linux, if the system refuses, or if standard error is already redirected.
+    /// Begins to redirect standard error to the log, so that messages of libraries such as "error: XDG_RUNTIME_DIR is
+    /// invalid" on a server do not look like the program's; [`console`](super::console) still reaches the original. Does
+    /// nothing on systems other than Linux, if the system refuses, or if standard error is already redirected.
     pub fn begin() -> Captured {
         Captured {
             #[cfg(target_os = "linux")]

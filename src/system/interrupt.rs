@@ -44,7 +44,8 @@ impl State {
 #[cfg(unix)]
 fn watch(answer: impl Fn(u8) + Send + 'static) -> Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-    let ignored = ignored_signals();
+    // Called before any is handled, this tells those ignored at the start.
+    let ignored = ignored_in(&std::fs::read_to_string("/proc/self/status").unwrap_or_default());
     let handled = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| ignored & (1 << (signal - 1)) == 0);
     let mut signals = signal_hook::iterator::Signals::new(handled)?;
     let listen = move || {
@@ -93,14 +94,7 @@ fn watch(_: impl Fn(u8) + Send + 'static) -> Result<()> {
     Ok(())
 }
 
-/// The signals that the program ignores, as a bit mask with signal 1 lowest. Called before any is handled, it returns
-/// those ignored at the start. Empty without `/proc`.
-#[cfg(unix)]
-fn ignored_signals() -> u64 {
-    ignored_in(&std::fs::read_to_string("/proc/self/status").unwrap_or_default())
-}
-
-/// Parses the text of `/proc/self/status`.
+/// The signals that a process ignores, by its `/proc/self/status`, as a bit mask with signal 1 lowest.
 #[cfg(unix)]
 fn ignored_in(status: &str) -> u64 {
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

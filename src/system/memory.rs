@@ -160,11 +160,9 @@ fn free_of_group(directory: &str) -> Option<u64> {
     let read = |name: &str| fs::read_to_string(format!("{directory}/{name}")).ok();
     let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
     let stat = read("memory.stat").unwrap_or_default();
-    let cached = stat.lines().filter_map(|line| {
-        let (name, bytes) = line.split_once(' ')?;
-        if matches!(name, "active_file" | "inactive_file") { bytes.parse::<u64>().ok() } else { None }
-    });
-    Some(number("memory.max")?.saturating_sub(number("memory.current")?.saturating_sub(cached.sum())))
+    let bytes = |name| stat.lines().find_map(|line| line.strip_prefix(name)?.trim().parse::<u64>().ok());
+    let cached = ["active_file ", "inactive_file "].into_iter().filter_map(bytes).sum();
+    Some(number("memory.max")?.saturating_sub(number("memory.current")?.saturating_sub(cached)))
 }
 
 #[cfg(test)]

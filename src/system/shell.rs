@@ -32,15 +32,11 @@ pub fn line<W: AsRef<OsStr>>(words: impl IntoIterator<Item = W>) -> String {
 }
 
 /// A word that is not UTF-8, in the quotes of bash and zsh that can hold any byte.
-#[cfg(unix)]
 fn with_bytes(word: &OsStr) -> String {
-    use std::os::unix::ffi::OsStrExt;
-    format!("$'{}'", word.as_bytes().escape_ascii())
-}
-
-/// No Windows shell can express such a word.
-#[cfg(not(unix))]
-fn with_bytes(word: &OsStr) -> String {
+    #[cfg(unix)]
+    return format!("$'{}'", std::os::unix::ffi::OsStrExt::as_bytes(word).escape_ascii());
+    // No Windows shell can express such a word.
+    #[cfg(not(unix))]
     quoted(&word.to_string_lossy()).into_owned()
 }
 

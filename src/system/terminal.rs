@@ -35,20 +35,13 @@ struct Envelope<'a, T> {
     figures: &'a T,
 }
 
-/// Writes `figures` as JSON, which begins with its `schema`.
+/// Writes `figures` as JSON, which begins with its `schema`, and a newline.
 ///
 /// # Errors
-/// As [`write_json`].
+/// If the file or standard output cannot be written, or JSON cannot represent the figures.
 pub fn write_figures(schema: u32, figures: &impl Serialize, target: &Path) -> Result<()> {
-    write_json(&Envelope { schema, version: env!("CARGO_PKG_VERSION"), figures }, target)
-}
-
-/// Writes `value` as JSON, followed by a newline.
-///
-/// # Errors
-/// If the file or standard output cannot be written, or JSON cannot represent the value.
-pub fn write_json(value: &impl Serialize, target: &Path) -> Result<()> {
-    let text = serde_json::to_string_pretty(value).context("cannot write the figures as JSON")? + "\n";
+    let whole = Envelope { schema, version: env!("CARGO_PKG_VERSION"), figures };
+    let text = serde_json::to_string_pretty(&whole).context("cannot write the figures as JSON")? + "\n";
     if target == Path::new(STANDARD) {
         return console::write_out(&text);
     }

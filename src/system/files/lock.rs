@@ -26,10 +26,10 @@ pub struct LockedError {
 /// The exclusive right to write a file. The lock is a hidden file beside it, because the file itself is replaced
 /// whenever it is written.
 #[derive(Debug)]
-pub struct FileLock {
+pub struct FileLock(
     /// `None` if there is nothing to lock: see [`FileLock::take`].
-    held: Option<(File, PathBuf)>,
-}
+    Option<(File, PathBuf)>,
+);
 
 impl FileLock {
     /// Locks `path` until the result is dropped. Devices and standard output need no lock; where the system has no locks, runs are not kept
@@ -43,7 +43,7 @@ impl FileLock {
 
     fn take_within(path: &Path, patience: Duration) -> Result<FileLock, LockedError> {
         if identity(path).is_none() {
-            return Ok(FileLock { held: None });
+            return Ok(FileLock(None));
         }
         let lock = || -> io::Result<(File, PathBuf)> {
             let path = resolved(path)?;
@@ -54,11 +54,11 @@ impl FileLock {
             Ok((lock_path(&path, patience)?, path))
         };
         match lock() {
-            Ok(held) => Ok(FileLock { held: Some(held) }),
+            Ok(held) => Ok(FileLock(Some(held))),
             Err(error) if error.kind() == ErrorKind::WouldBlock => Err(LockedError { path: path.to_owned() }),
             Err(error) => {
                 log::warn!("{} cannot be locked: {error}", path.display());
-                Ok(FileLock { held: None })
+                Ok(FileLock(None))
             }
         }
     }
@@ -66,7 +66,7 @@ impl FileLock {
 
 impl Drop for FileLock {
     fn drop(&mut self) {
-        if let Some((_, path)) = &self.held {
+        if let Some((_, path)) = &self.0 {
             // It is still locked, so no other run has it. If it cannot be removed, the next run reuses it.
             let _ = fs::remove_file(path);
         }

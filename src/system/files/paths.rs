@@ -1,11 +1,9 @@
 //! Paths: as text in messages and JSON, what they lead to, and the user's directories.
 
-use super::sync::create_directory;
 use crate::system::console::printable;
-use anyhow::{Context, Result};
 use std::env;
 use std::ffi::{OsStr, OsString};
-use std::fs;
+use std::fs::{self, File};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
@@ -53,17 +51,6 @@ pub(super) fn resolved(path: &Path) -> io::Result<PathBuf> {
     }
 }
 
-/// Creates the directory of `--out`.
-///
-/// # Errors
-/// If it cannot be created.
-pub fn make_directory(directory: &Path) -> Result<()> {
-    let context = || format!("cannot create the directory {}; choose another with --out", directory.shown());
-    // A file's parent may be empty.
-    let created = if directory.as_os_str().is_empty() { Ok(()) } else { create_directory(directory) };
-    created.with_context(context)
-}
-
 /// The variable that names the directory for state, and its default place in the home directory.
 const USUAL: (&str, &str) = if cfg!(windows) {
     ("LOCALAPPDATA", "AppData/Local")
@@ -98,6 +85,22 @@ pub fn pictures_directory() -> Option<PathBuf> {
 pub fn temporary_directory() -> PathBuf {
     // In WebAssembly, `temp_dir` panics.
     if cfg!(target_family = "wasm") { PathBuf::from("/") } else { env::temp_dir() }
+}
+
+/// A new empty file without a name. On Linux it is in memory, so no directory needs to be writable.
+///
+/// # Errors
+/// If there is no memory file and the directory for temporary files cannot be used.
+pub(super) fn unnamed() -> io::Result<File> {
+    #[cfg(target_os = "linux")]
+    if let Ok(file) = rustix::fs::memfd_create("weekender", rustix::fs::MemfdFlags::CLOEXEC) {
+        return Ok(file.into());
+    }
+    let directory = temporary_directory();
+    tempfile::tempfile_in(&directory).map_err(|error| {
+        let text = format!("it needs a temporary file, but {} cannot hold one: {error}", directory.display());
+        io::Error::new(error.kind(), text)
+    })
 }
 
 pub fn home_directory() -> Option<PathBuf> {

@@ -1,8 +1,7 @@
 //! Input files: their kind and length are checked before anything is read.
 
-use super::paths::{STANDARD, ShownPath};
+use super::paths::{STANDARD, ShownPath, unnamed};
 use super::replace::is_pipe;
-use super::standard::unnamed;
 use crate::system::memory::words;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;

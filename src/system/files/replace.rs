@@ -1,8 +1,7 @@
 //! Output files written whole or not at all: first beside their destination, then renamed.
 
 use super::leftovers;
-use super::paths::{STANDARD, ShownPath, resolved};
-use super::standard::unnamed;
+use super::paths::{STANDARD, ShownPath, resolved, unnamed};
 use super::sync::sync_directory;
 use std::fs::{self, File, Metadata, OpenOptions, Permissions};
 use std::io::{self, BufWriter, ErrorKind, Seek, Write};

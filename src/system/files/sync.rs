@@ -1,5 +1,7 @@
 //! Directories that survive a power cut with the files that were written into them.
 
+use super::paths::ShownPath;
+use anyhow::{Context, Result};
 use std::fs::{self, File};
 use std::io::{self, ErrorKind};
 use std::path::Path;
@@ -23,10 +25,18 @@ pub fn sync_directory(directory: &Path) -> io::Result<()> {
     }
 }
 
-/// Creates a directory and those above it, and makes the new ones durable.
-pub(super) fn create_directory(directory: &Path) -> io::Result<()> {
+/// Creates a directory and those above it, if they are missing, and makes the new ones durable.
+///
+/// # Errors
+/// If a directory cannot be created; the message names it and `--out`.
+pub fn make_directory(directory: &Path) -> Result<()> {
     let is_new = |at: &&Path| !at.as_os_str().is_empty() && !at.exists();
     let new: Vec<&Path> = directory.ancestors().take_while(is_new).collect();
-    fs::create_dir_all(directory)?;
-    new.into_iter().filter_map(Path::parent).try_for_each(sync_directory)
+    // A file's parent may be empty.
+    let created = if directory.as_os_str().is_empty() { Ok(()) } else { fs::create_dir_all(directory) };
+    let created =
+        created.and_then(|()| new.into_iter().filter_map(Path::parent).try_for_each(sync_directory));
+    created.with_context(|| {
+        format!("cannot create the directory {}; choose another with --out", directory.shown())
+    })
 }
