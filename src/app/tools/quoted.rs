@@ -24,7 +24,7 @@ const CHAPTERS: &[(&str, &str)] = embedded![
 const SOURCES: &[(&str, &str)] = embedded![
     "reference/": "rt_weekend.c";
     "shaders/": "camera.wgsl" "lanes.wgsl" "material.wgsl" "path.wgsl" "resolve.wgsl" "rng.wgsl" "rules.wgsl" "sphere.wgsl";
-    "src/batch/": "progress.rs";
+    "src/batch/": "picture.rs";
     "src/film/": "resolve.rs";
     "src/job/output/": "ppm.rs";
     "src/kernel/": "constants.rs";
