@@ -113,7 +113,7 @@ printf '@..\\weekender.exe%s\r\n' "$command" > again.bat
 windows cmd /c again.bat
 exists 'it can be run by cmd' 'ein Bild.exr'
 case_of 'a drive' 0 'C:\films\a.exr' --batch "${tiny[@]}" --out 'C:\films\a.exr'
-case_of 'both kinds of slashes' 0 '8 (4 of them new)' --batch "${small[@]}" --samples 8 --resume 'C:\films/a.exr' --out 'C:/films\b.exr'
+case_of 'both kinds of slashes' 0 '8 per pixel, 4 of them new' --batch "${small[@]}" --samples 8 --resume 'C:\films/a.exr' --out 'C:/films\b.exr'
 exists 'that file' "$WINEPREFIX/drive_c/films/b.exr"
 mkdir -p "$WINEPREFIX/dosdevices/unc/server/share"
 case_of 'a UNC name' 0 '\\server\share\a.exr' --batch "${tiny[@]}" --out '\\server\share\a.exr'

@@ -7,11 +7,11 @@ pub use verdict::{Comparison, ROUNDING_BIAS, compare, half_differences};
 
 use super::answer::{Verdict, deliver};
 use super::picture::Picture;
-use crate::batch::aligned;
+use crate::batch::{Line, aligned, lines};
 use crate::cli::{CompareOptions, check_outputs};
-use crate::numbers::statistics::blocks::{Block, SUM_DEVIATIONS};
+use crate::numbers::statistics::blocks::Block;
 use anyhow::{Result, bail};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::process::ExitCode;
 
 /// Number of blocks named in the output.
@@ -25,7 +25,8 @@ pub fn run(options: &CompareOptions) -> Result<ExitCode> {
     let sides =
         [Picture::read(&options.first, options.encoding)?, Picture::read(&options.second, options.encoding)?];
     let comparison = compare_sides(&sides)?;
-    deliver(json, &text(&sides, &comparison), 2, &figures(&sides, &comparison))?;
+    let figures = figures(&sides, &comparison);
+    deliver(json, &text(&comparison, &figures), 2, &figures)?;
     Ok(comparison.verdict().exit_code())
 }
 
@@ -46,30 +47,31 @@ pub fn compare_sides(sides: &[Picture; 2]) -> Result<Comparison> {
     Ok(comparison)
 }
 
-pub fn text(sides: &[Picture; 2], comparison: &Comparison) -> String {
-    let Comparison { test, rms, bias, .. } = comparison;
-    let side = |side: &Picture| format!("{}: {}", side.name, side.about);
-    let mut text = vec![("first", side(&sides[0])), ("second", side(&sides[1]))];
-    let measure = if comparison.noise.is_some() { "noise" } else { "noise, in blocks" };
-    let noise = comparison.noise.map_or_else(String::new, |noise| format!("; noise of both {noise:.2e}"));
-    let deviation = comparison.bias_deviation.map_or_else(String::new, |x| format!(" ± {x:.1e}"));
-    let times = comparison.times_noise();
-    text.push((
+const LINES: [Line; 4] = [
+    ("first", &["{sides/0/name}: {sides/0/about}"]),
+    ("second", &["{sides/1/name}: {sides/1/about}"]),
+    (
         "difference",
-        format!("{times:.2} x {measure} ({rms:.2e} RMS{noise}), {bias:+.1e}{deviation} on average"),
-    ));
-    let blocks = format!(
-        "{} of about 8x8 pixels: sum of z^2 {:+.1} deviations from that of noise (at most {SUM_DEVIATIONS:+.0}), largest |z| \
-         {:.2} (at most {:.2})",
-        test.blocks.len(),
-        test.largest_excess(),
-        test.largest,
-        test.largest_limit
-    );
-    text.push(("blocks", blocks));
+        &[
+            "{times_noise} x noise, from the {evidence} ({rms} RMS",
+            "; noise of both {noise}",
+            "), {bias}",
+            " ± {bias_deviation}",
+            " on average",
+        ],
+    ),
+    (
+        "blocks",
+        &["{blocks} of about 8x8 pixels: sum of z^2 {excess} deviations from that of noise in R, G and B, \
+           largest |z| {largest} (at most {largest_limit})"],
+    ),
+];
+
+fn text(comparison: &Comparison, figures: &Value) -> String {
+    let mut text = lines(figures, &LINES);
     if !comparison.is_same {
         let name = |block: &Block| format!("{},{} ({:.1})", block.x.start, block.y.start, block.largest());
-        let worst: Vec<String> = test.worst(NAMED_BLOCKS).into_iter().map(name).collect();
+        let worst: Vec<String> = comparison.test.worst(NAMED_BLOCKS).into_iter().map(name).collect();
         text.push(("worst at", worst.join("  ")));
     }
     text.extend(comparison.notes.iter().map(|note| ("note", note.clone())));
@@ -85,7 +87,7 @@ pub fn text(sides: &[Picture; 2], comparison: &Comparison) -> String {
 }
 
 /// The comparison as JSON.
-fn figures(sides: &[Picture; 2], comparison: &Comparison) -> serde_json::Value {
+fn figures(sides: &[Picture; 2], comparison: &Comparison) -> Value {
     let test = &comparison.test;
     let block = |block: &Block| {
         json!({
@@ -111,7 +113,7 @@ fn figures(sides: &[Picture; 2], comparison: &Comparison) -> serde_json::Value {
         "largest_limit": test.largest_limit,
         "worst_blocks": test.worst(NAMED_BLOCKS).into_iter().map(block).collect::<Vec<_>>(),
     });
-    if let (Some(figures), serde_json::Value::Object(more)) = (figures.as_object_mut(), more) {
+    if let (Some(figures), Value::Object(more)) = (figures.as_object_mut(), more) {
         figures.extend(more);
     }
     figures

@@ -123,12 +123,6 @@ impl RenderJob {
             "choose a smaller --size or a scene of fewer spheres",
         )
     }
-
-    /// Whether a film has this job's size.
-    pub fn fits(&self, film: &Film) -> bool {
-        let RenderSettings { width, height, .. } = self.settings;
-        (film.width(), film.height()) == (width, height)
-    }
 }
 
 /// A job that cannot be rendered.

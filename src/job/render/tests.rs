@@ -49,15 +49,6 @@ fn views_share_a_scene_but_copies_do_not() {
 }
 
 #[test]
-fn a_film_of_the_same_size_fits() {
-    let job = job(4, 3, 1).unwrap();
-    assert!(job.fits(&job.new_film()) && job.fits(&Film::new(4, 3)));
-    for (width, height) in [(3, 4), (5, 3), (4, 2)] {
-        assert!(!job.fits(&Film::new(width, height)), "{width}x{height}");
-    }
-}
-
-#[test]
 fn memory_check_counts_films_file_and_spheres() {
     if memory::room().is_none() {
         return;

@@ -16,9 +16,10 @@ use std::path::{Path, PathBuf};
 /// Longest table, bytes: about twenty million spheres.
 const LENGTH_LIMIT: u64 = 1 << 30;
 
-const PLACE: [&str; 4] = ["x", "y", "z", "radius"];
-const MATERIAL: &str = "material";
-const COLOUR: [&str; 3] = ["red", "green", "blue"];
+/// The columns of a table. Either the material or the colour is missing.
+const COLUMNS: [&str; 8] = ["x", "y", "z", "radius", "material", "red", "green", "blue"];
+const RADIUS: usize = 3;
+const MATERIAL: usize = 4;
 
 /// The text of a table.
 pub(super) struct Table<'a> {
@@ -57,25 +58,30 @@ impl<'a> Table<'a> {
         let text = self.text.trim_start_matches('\u{feff}');
         let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
         let (line, header) = lines.next().unwrap_or((1, ""));
-        let columns = Columns::of(header).map_err(|reason| at(line, reason))?;
+        let columns = columns_of(header).map_err(|reason| at(line, reason))?;
         let mut coloured = HashMap::new();
         for (line, row) in lines {
             let index = scene.spheres.len();
-            let sphere = columns.sphere(row, index, |paint| match paint {
-                Paint::Material(name) => {
-                    index_of.get(name).copied().ok_or_else(|| missing_material(index, name).to_string())
+            let mut values = Values { index, texts: [None; COLUMNS.len()] };
+            values.read(row, &columns).map_err(|reason| at(line, reason))?;
+            let mut sphere = || -> Result<Sphere, String> {
+                let center = values.vector(0)?;
+                let radius = values.number(RADIUS)?;
+                if let Some(name) = values.texts[MATERIAL] {
+                    let material = index_of.get(name).copied();
+                    let material = material.ok_or_else(|| missing_material(index, name).to_string())?;
+                    return Ok(Sphere { center, radius, material });
                 }
-                Paint::Colour(albedo) => {
-                    let bits = albedo.to_array().map(f64::to_bits);
-                    if let Some(known) = coloured.get(&bits) {
-                        return Ok(*known);
-                    }
-                    let own = added_material(index, Material::Lambertian { albedo }, scene, index_of)?;
-                    coloured.insert(bits, own);
-                    Ok(own)
-                }
-            });
-            let sphere = sphere.map_err(|reason| at(line, reason))?;
+                let albedo = values.vector(MATERIAL + 1)?;
+                let bits = albedo.to_array().map(f64::to_bits);
+                let material = match coloured.get(&bits) {
+                    Some(known) => *known,
+                    None => added_material(index, Material::Lambertian { albedo }, scene, index_of)?,
+                };
+                coloured.insert(bits, material);
+                Ok(Sphere { center, radius, material })
+            };
+            let sphere = sphere().map_err(|reason| at(line, reason))?;
             sphere.validate(index, scene.materials.len()).map_err(|error| at(line, error.to_string()))?;
             scene.spheres.push(sphere);
         }
@@ -108,86 +114,58 @@ fn fields(row: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// How a row says what its sphere looks like.
-enum Paint<'a> {
-    Material(&'a str),
-    Colour(DVec3),
-}
-
-/// Where in a row each value is.
-struct Columns {
-    count: usize,
-    place: [usize; 4],
-    paint: PaintColumns,
-}
-
-enum PaintColumns {
-    Material(usize),
-    Colour([usize; 3]),
-}
-
-impl Columns {
-    fn of(header: &str) -> Result<Columns, String> {
-        let names: Vec<&str> = fields(header).collect();
-        let column = |name: &str| names.iter().position(|own| *own == name);
-        let paint = match (column(MATERIAL), COLOUR.map(column)) {
-            (Some(material), [None, None, None]) => Some(PaintColumns::Material(material)),
-            (None, [Some(red), Some(green), Some(blue)]) => Some(PaintColumns::Colour([red, green, blue])),
-            _ => None,
-        };
-        let needed = match paint {
-            Some(PaintColumns::Colour(_)) => PLACE.len() + COLOUR.len(),
-            _ => PLACE.len() + 1,
-        };
-        match (PLACE.map(column), paint) {
-            ([Some(x), Some(y), Some(z), Some(radius)], Some(paint)) if names.len() == needed => {
-                Ok(Columns { count: needed, place: [x, y, z, radius], paint })
-            }
-            _ => Err(format!(
-                "the first line of a table of spheres is {header:?}, but must name its columns: x,y,z,radius and either \
-                 material or red,green,blue, each once, separated by commas, and no others"
-            )),
-        }
+/// For each of [`COLUMNS`], which value of a row it is.
+fn columns_of(header: &str) -> Result<[Option<usize>; COLUMNS.len()], String> {
+    let names: Vec<&str> = fields(header).collect();
+    let columns = COLUMNS.map(|name| names.iter().position(|own| *own == name));
+    let is_there = columns.map(|column| column.is_some());
+    let with_material = [true, true, true, true, true, false, false, false];
+    let with_colour = [true, true, true, true, false, true, true, true];
+    let is_known = [with_material, with_colour].contains(&is_there);
+    if is_known && names.len() == columns.iter().flatten().count() {
+        return Ok(columns);
     }
+    Err(format!(
+        "the first line of a table of spheres is {header:?}, but must name its columns: x,y,z,radius and either material \
+         or red,green,blue, each once, separated by commas, and no others"
+    ))
+}
 
-    /// The sphere of a row. `material` finds or makes its material.
-    fn sphere(
-        &self,
-        row: &str,
-        index: usize,
-        material: impl FnOnce(Paint<'_>) -> Result<usize, String>,
-    ) -> Result<Sphere, String> {
-        let mut values = [""; PLACE.len() + COLOUR.len()];
+/// The values of a row, in the order of [`COLUMNS`].
+struct Values<'a> {
+    index: usize,
+    texts: [Option<&'a str>; COLUMNS.len()],
+}
+
+impl<'a> Values<'a> {
+    fn read(&mut self, row: &'a str, columns: &[Option<usize>; COLUMNS.len()]) -> Result<(), String> {
         let mut found = 0;
         for field in fields(row) {
-            if let Some(value) = values.get_mut(found) {
-                *value = field;
+            if let Some(column) = columns.iter().position(|column| *column == Some(found)) {
+                self.texts[column] = Some(field);
             }
             found += 1;
         }
-        if found != self.count {
-            return Err(format!(
-                "spheres[{index}] should have {} values, one for each column, and has {found}; separate the values by \
-                 commas, and write a point in a number",
-                self.count
-            ));
+        let (index, count) = (self.index, columns.iter().flatten().count());
+        if found == count {
+            return Ok(());
         }
-        let number = |column: usize, name: &str| {
-            let value = values[column];
-            value.parse::<f64>().map_err(|_| {
-                format!("spheres[{index}].{name} is {value:?}, but must be a number such as -1.5 or 2e3")
-            })
-        };
-        let [x, y, z, radius] = self.place;
-        let center = DVec3::new(number(x, "x")?, number(y, "y")?, number(z, "z")?);
-        let radius = number(radius, "radius")?;
-        let paint = match self.paint {
-            PaintColumns::Material(column) => Paint::Material(values[column]),
-            PaintColumns::Colour([red, green, blue]) => {
-                Paint::Colour(DVec3::new(number(red, "red")?, number(green, "green")?, number(blue, "blue")?))
-            }
-        };
-        Ok(Sphere { center, radius, material: material(paint)? })
+        Err(format!(
+            "spheres[{index}] should have {count} values, one for each column, and has {found}; separate the values by \
+             commas, and write a point in a number"
+        ))
+    }
+
+    fn number(&self, column: usize) -> Result<f64, String> {
+        let (index, name, value) = (self.index, COLUMNS[column], self.texts[column].unwrap_or_default());
+        value.parse().map_err(|_| {
+            format!("spheres[{index}].{name} is {value:?}, but must be a number such as -1.5 or 2e3")
+        })
+    }
+
+    /// The vector in three columns from this one.
+    fn vector(&self, column: usize) -> Result<DVec3, String> {
+        Ok(DVec3::new(self.number(column)?, self.number(column + 1)?, self.number(column + 2)?))
     }
 }
 
@@ -201,7 +179,7 @@ pub(super) fn to_value(scene: &Scene) -> Option<String> {
     }
     let names: Vec<&str> = names().collect();
     let mut text = String::with_capacity(64 * scene.spheres.len());
-    text += &format!("'''\n{},{MATERIAL}\n", PLACE.join(","));
+    text += &format!("'''\n{}\n", COLUMNS[..=MATERIAL].join(","));
     for Sphere { center: DVec3 { x, y, z }, radius, material } in &scene.spheres {
         let name = names.get(*material).copied().unwrap_or_default();
         // Writing to a string cannot fail.
