@@ -29,13 +29,13 @@ use crate::system::files::{STANDARD, ShownPath, check_replaceable, check_writabl
 use crate::system::interrupt::Interrupt;
 use crate::system::terminal::{self, ProgressChoice, print, print_beside};
 use anyhow::Context;
-use files::Files;
+use files::{Files, Written};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
-use summary::Summary;
+use summary::{PICTURE, figures};
 
 /// Options of `--batch`.
 #[derive(Clone, Debug)]
@@ -89,7 +89,7 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     let mut files = Files::lock(options)?;
     let resumed = resumed(&files.options)?;
     if let Some(saved) = resumed.as_ref().filter(|saved| is_complete(&files.options, &saved.film)) {
-        let reported = report_picture(&summary_of_complete(&files.options, &saved.film));
+        let reported = report_picture(&files.options, &figures_of_complete(&files.options, &saved.film));
         return reported.map(|()| ExitCode::SUCCESS).map_err(Failure::Run);
     }
     let warnings = files.check(resumed.as_ref())?;
@@ -100,15 +100,14 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     if let Some(path) = &options.save_scene {
         write_text(path, &file::to_toml(&options.recipe)).map_err(Failure::run)?;
     }
-    let (summary, outcome) = picture::render(&files, film, &warnings, &mut studio, &interrupt);
-    ended(outcome.err(), report_picture(&summary), &interrupt)
+    let (figures, outcome) = picture::render(&files, film, &warnings, &mut studio, &interrupt);
+    ended(outcome.err(), report_picture(options, &figures), &interrupt)
 }
 
-fn report_picture(summary: &Summary) -> anyhow::Result<()> {
-    let BatchOptions { outputs, json, .. } = summary.render;
+fn report_picture(BatchOptions { outputs, json, .. }: &BatchOptions, figures: &Value) -> anyhow::Result<()> {
     let mut paths = outputs.iter().map(|output| output.path.as_path());
     let beside = paths.find(|path| *path == Path::new(STANDARD));
-    report(&summary.json(), &Summary::LINES, json.as_deref(), beside)
+    report(figures, &PICTURE, json.as_deref(), beside)
 }
 
 /// The film to continue. A damaged one of `--continue` is renamed, and rendered again.
@@ -137,7 +136,7 @@ fn is_complete(options: &BatchOptions, film: &Film) -> bool {
         && film.samples().first_gap(options.plan.range(), u64::MAX).is_none()
 }
 
-fn summary_of_complete<'a>(render: &'a BatchOptions, film: &Film) -> Summary<'a> {
+fn figures_of_complete(options: &BatchOptions, film: &Film) -> Value {
     let status = Status {
         phase: Phase::Done(EndReason::Samples),
         samples_per_pixel: film.sample_count(),
@@ -145,9 +144,8 @@ fn summary_of_complete<'a>(render: &'a BatchOptions, film: &Film) -> Summary<'a>
         error: film.error(),
         ..Status::default()
     };
-    let files = render.outputs.iter().map(|output| output.path.clone()).collect();
-    let samples = Some(film.samples().to_string());
-    Summary { render, samples, status, denoised: None, files, writing: Duration::ZERO }
+    let files = options.outputs.iter().map(|output| output.path.clone()).collect();
+    figures(options, Some(film), &status, &Written { files, ..Written::default() }, Duration::ZERO)
 }
 
 /// Version of the JSON. Incremented when a key is removed or changes meaning.

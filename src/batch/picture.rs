@@ -4,7 +4,7 @@ use super::BatchOptions;
 use super::files::{Files, Written};
 use super::keeping::Keeper;
 use super::studio::{Event, Studio};
-use super::summary::Summary;
+use super::summary::figures;
 use crate::film::Film;
 use crate::progressive::describe::seconds;
 use crate::progressive::{Phase, Plan, Status};
@@ -14,19 +14,20 @@ use crate::system::interrupt::Interrupt;
 use crate::system::journal;
 use crate::system::terminal::{Display, ProgressChoice};
 use anyhow::anyhow;
+use serde_json::Value;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Renders a picture, from the film to continue, and writes its files. On any failure, the samples rendered so far are
-/// kept. `warnings` are printed before it begins.
-pub(super) fn render<'a>(
-    files: &'a Arc<Files>,
+/// kept. `warnings` are printed before it begins. Returns its figures, and whether all went well.
+pub(super) fn render(
+    files: &Arc<Files>,
     film: Option<Film>,
     warnings: &[String],
     studio: &mut Studio,
     interrupt: &Interrupt,
-) -> (Summary<'a>, Result<(), Failure>) {
+) -> (Value, Result<(), Failure>) {
     let options = &files.options;
     let mut keeper = options.checkpoint().map(|_| Keeper::new(files));
     let mut display = display(options.progress, STEPS, &options.recipe.name);
@@ -65,9 +66,7 @@ pub(super) fn render<'a>(
         journal::write_report();
     }
     let outcome = outcome(options, &status, film.as_ref(), &written, kept);
-    let samples = film.map(|film| film.samples().to_string());
-    let (denoised, writing) = (written.denoised, begin.elapsed());
-    (Summary { render: options, samples, status, denoised, files: written.files, writing }, outcome)
+    (figures(options, film.as_ref(), &status, &written, begin.elapsed()), outcome)
 }
 
 /// The result of a render and of writing its files. `kept` is the number of samples per pixel in the checkpoint.

@@ -1,14 +1,14 @@
 //! The final figures of a run: lines for people, and the same figures as JSON.
 
 use super::BatchOptions;
-use crate::denoise::DenoisedError;
+use super::files::Written;
+use crate::film::Film;
 use crate::progressive::describe::seconds;
 use crate::progressive::{Phase, Status};
 use crate::system::console::printable;
 use crate::system::memory;
 use serde_json::{Value, json};
 use std::fmt::Write;
-use std::path::PathBuf;
 use std::time::Duration;
 
 /// A label, and pieces of the line after it. `{key}` in a piece stands for a figure; a piece that lacks one is left
@@ -61,93 +61,87 @@ pub fn aligned<'a>(lines: &[(&'a str, String)]) -> String {
     })
 }
 
+/// The lines about a picture.
+pub(super) const PICTURE: [Line; 10] = [
+    ("scene", &["{scene}, {width}x{height}, depth {max_depth}, {sampler}, seed {seed}"]),
+    ("backend", &["{backend} {device}, lanes {lanes}, threads {threads}"]),
+    ("kernel", &["{kernel}"]),
+    ("left out", &["{left_out}"]),
+    (
+        "samples",
+        &["{samples_per_pixel} per pixel, {added_samples_per_pixel} of them new, ended by {ended_by}"],
+    ),
+    (
+        "time",
+        &[
+            "{total_seconds} (prepare {prepare_seconds}, build hierarchy {hierarchy_seconds}, trace {trace_seconds}, \
+           write {write_seconds})",
+        ],
+    ),
+    (
+        "speed",
+        &["{paths_per_second}paths/s, {rays_per_second}rays/s", ", {lane_occupancy} of all lanes in use"],
+    ),
+    ("error", &["{error}, ", "rejected samples {rejected_samples}"]),
+    ("denoised", &["{denoised}"]),
+    ("files", &["{files}"]),
+];
+
 /// Time and quality of one picture. Times and counts are those of this run; samples per pixel, rejected samples and the
-/// estimates are those of the film, including its earlier samples.
-pub(super) struct Summary<'a> {
-    pub render: &'a BatchOptions,
-    /// The samples in the film.
-    pub samples: Option<String>,
-    pub status: Status,
-    /// The error of the denoised picture.
-    pub denoised: Option<DenoisedError>,
-    pub files: Vec<PathBuf>,
-    /// Time spent writing the files.
-    pub writing: Duration,
-}
-
-impl Summary<'_> {
-    pub const LINES: [Line; 10] = [
-        ("scene", &["{scene}, {width}x{height}, depth {max_depth}, {sampler}, seed {seed}"]),
-        ("backend", &["{backend} {device}, lanes {lanes}, threads {threads}"]),
-        ("kernel", &["{kernel}"]),
-        ("left out", &["{left_out}"]),
-        (
-            "samples",
-            &["{samples_per_pixel} per pixel, {added_samples_per_pixel} of them new, ended by {ended_by}"],
-        ),
-        (
-            "time",
-            &["{total_seconds} (prepare {prepare_seconds}, build hierarchy {hierarchy_seconds}, \
-               trace {trace_seconds}, write {write_seconds})"],
-        ),
-        (
-            "speed",
-            &["{paths_per_second}paths/s, {rays_per_second}rays/s", ", {lane_occupancy} of all lanes in use"],
-        ),
-        ("error", &["{error}, ", "rejected samples {rejected_samples}"]),
-        ("denoised", &["{denoised}"]),
-        ("files", &["{files}"]),
-    ];
-
-    pub fn json(&self) -> Value {
-        let Summary { render, status, .. } = self;
-        let (settings, backend, error) = (render.job.settings(), status.backend.as_ref(), status.error);
-        let preparing = status.prepare.saturating_sub(status.hierarchy);
-        let ended_by = match &status.phase {
-            Phase::Done(reason) => reason.name(),
-            Phase::Failed(_) => "failure",
-            _ => "nothing",
-        };
-        json!({
-            "scene": render.recipe.name,
-            "stage": render.stage.map(|stage| stage.id),
-            "width": settings.width,
-            "height": settings.height,
-            "max_depth": settings.max_depth,
-            "sampler": settings.sampler.name(),
-            "seed": settings.seed,
-            "backend": backend.map(|info| info.name),
-            "device": backend.map(|info| &info.device),
-            "lanes": backend.map(|info| info.lanes),
-            "threads": backend.map(|info| info.threads),
-            "kernel": status.kernel,
-            "left_out": status.left_out,
-            "samples_per_pixel": status.samples_per_pixel,
-            "sample_ranges": self.samples.as_deref().unwrap_or_default(),
-            "added_samples_per_pixel": status.added(),
-            "prepare_seconds": preparing.as_secs_f64(),
-            "hierarchy_seconds": status.hierarchy.as_secs_f64(),
-            "trace_seconds": status.trace.as_secs_f64(),
-            "write_seconds": self.writing.as_secs_f64(),
-            "total_seconds": (status.elapsed + self.writing).as_secs_f64(),
-            "paths": status.stats.paths,
-            "rays": status.stats.rays,
-            "paths_per_second": status.paths_per_second(),
-            "rays_per_second": status.rays_per_second(),
-            "lane_occupancy": status.lane_occupancy(),
-            "error": error.map(|error| error.words()),
-            "rmse_estimate": error.map(|error| error.rmse),
-            "rmse_deviation": error.map(|error| error.rmse_deviation),
-            "rel_mse_estimate": error.map(|error| error.rel_mse),
-            "denoised": self.denoised.map(|error| error.words()),
-            "denoised_rmse_estimate": self.denoised.map(|error| error.rmse()),
-            "denoised_rmse_deviation": self.denoised.map(|error| error.rmse_deviation()),
-            "rejected_samples": status.rejected_samples,
-            "ended_by": ended_by,
-            "backends": status.contributions,
-            "history": status.history,
-            "warnings": status.messages,
-            "files": self.files.iter().map(|file| file.to_string_lossy()).collect::<Vec<_>>(),
-        })
-    }
+/// estimates are those of the film, including its earlier samples. `writing` is the time spent writing the files.
+pub(super) fn figures(
+    options: &BatchOptions,
+    film: Option<&Film>,
+    status: &Status,
+    written: &Written,
+    writing: Duration,
+) -> Value {
+    let (settings, backend, error) = (options.job.settings(), status.backend.as_ref(), status.error);
+    let preparing = status.prepare.saturating_sub(status.hierarchy);
+    let ended_by = match &status.phase {
+        Phase::Done(reason) => reason.name(),
+        Phase::Failed(_) => "failure",
+        _ => "nothing",
+    };
+    json!({
+        "scene": options.recipe.name,
+        "stage": options.stage.map(|stage| stage.id),
+        "width": settings.width,
+        "height": settings.height,
+        "max_depth": settings.max_depth,
+        "sampler": settings.sampler.name(),
+        "seed": settings.seed,
+        "backend": backend.map(|info| info.name),
+        "device": backend.map(|info| &info.device),
+        "lanes": backend.map(|info| info.lanes),
+        "threads": backend.map(|info| info.threads),
+        "kernel": status.kernel,
+        "left_out": status.left_out,
+        "samples_per_pixel": status.samples_per_pixel,
+        "sample_ranges": film.map(|film| film.samples().to_string()).unwrap_or_default(),
+        "added_samples_per_pixel": status.added(),
+        "prepare_seconds": preparing.as_secs_f64(),
+        "hierarchy_seconds": status.hierarchy.as_secs_f64(),
+        "trace_seconds": status.trace.as_secs_f64(),
+        "write_seconds": writing.as_secs_f64(),
+        "total_seconds": (status.elapsed + writing).as_secs_f64(),
+        "paths": status.stats.paths,
+        "rays": status.stats.rays,
+        "paths_per_second": status.paths_per_second(),
+        "rays_per_second": status.rays_per_second(),
+        "lane_occupancy": status.lane_occupancy(),
+        "error": error.map(|error| error.words()),
+        "rmse_estimate": error.map(|error| error.rmse),
+        "rmse_deviation": error.map(|error| error.rmse_deviation),
+        "rel_mse_estimate": error.map(|error| error.rel_mse),
+        "denoised": written.denoised.map(|error| error.words()),
+        "denoised_rmse_estimate": written.denoised.map(|error| error.rmse()),
+        "denoised_rmse_deviation": written.denoised.map(|error| error.rmse_deviation()),
+        "rejected_samples": status.rejected_samples,
+        "ended_by": ended_by,
+        "backends": status.contributions,
+        "history": status.history,
+        "warnings": status.messages,
+        "files": written.files.iter().map(|file| file.to_string_lossy()).collect::<Vec<_>>(),
+    })
 }
