@@ -35,13 +35,13 @@ struct Envelope<'a, T> {
     figures: &'a T,
 }
 
-/// Writes `figures` as JSON, which begins with its `schema`, and a newline.
+/// Writes `figures` as JSON, which begins with its `schema`.
 ///
 /// # Errors
-/// If the file or standard output cannot be written, or JSON cannot represent the figures.
+/// If the file or standard output cannot be written, or JSON cannot represent the value.
 pub fn write_figures(schema: u32, figures: &impl Serialize, target: &Path) -> Result<()> {
-    let whole = Envelope { schema, version: env!("CARGO_PKG_VERSION"), figures };
-    let text = serde_json::to_string_pretty(&whole).context("cannot write the figures as JSON")? + "\n";
+    let value = Envelope { schema, version: env!("CARGO_PKG_VERSION"), figures };
+    let text = serde_json::to_string_pretty(&value).context("cannot write the figures as JSON")? + "\n";
     if target == Path::new(STANDARD) {
         return console::write_out(&text);
     }
