@@ -2,6 +2,7 @@
 
 #![allow(clippy::expect_used, reason = "a benchmark that cannot run has failed")]
 
+mod features;
 mod hierarchy;
 mod intersect;
 mod packet;

@@ -5,8 +5,6 @@ use super::{check_outputs, sources};
 use crate::job::recipe::Recipe;
 use crate::job::render::{RenderJob, SAMPLE_LIMIT, SamplerKind};
 use crate::render_cpu::Isa;
-use crate::scene::builtin::BuiltinScene;
-use crate::stages::Stage;
 use crate::system::terminal::ProgressChoice;
 use anyhow::Result;
 use clap::Args;
@@ -18,15 +16,10 @@ pub struct BenchOptions {
     /// A built-in scene, field:N or a scene file; may be given several times [default: three-spheres and book]
     #[arg(long, value_name = "NAME|FILE.toml")]
     scene: Vec<String>,
-    /// Measure the gain from leaving out of each kernel the code that its picture does not need, for all stages and
-    /// built-in scenes
-    #[arg(long)]
-    pub features: bool,
-    /// Width and height in pixels, each 1 to 16384 [default: the scene's; with --features, 200 pixels across]
+    /// Width and height in pixels, each 1 to 16384 [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
-    /// Maximum samples per pixel of a run [default: the scene's, but no more than 75 million paths; with --features, as
-    /// many as --run-limit allows]
+    /// Maximum samples per pixel of a run [default: the scene's, but no more than 75 million paths]
     #[arg(long, alias = "spp", value_name = "COUNT", value_parser = whole::<u64>(1..=SAMPLE_LIMIT))]
     samples: Option<u64>,
     /// Source of random numbers [default: sobol, or the scene's]
@@ -45,10 +38,10 @@ pub struct BenchOptions {
     #[arg(long, value_name = "COUNT", value_parser = whole::<usize>(1..=1000), default_value = "5",
           default_value_if("quick", "true", "3"))]
     pub runs: usize,
-    /// Approximate time limit of a run in seconds; slow rows take fewer samples [default: 10, or 1 with --quick; with
-    /// --features 0.4 and 0.1]
-    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
-    run_limit: Option<f64>,
+    /// Approximate time limit of a run in seconds; slow rows take fewer samples; with --quick, 1 by default
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, default_value = "10",
+          default_value_if("quick", "true", "1"))]
+    pub run_limit: f64,
     /// Fewer samples and runs, for a first impression within a minute
     #[arg(long)]
     quick: bool,
@@ -76,9 +69,6 @@ const DEFAULT_SCENES: [&str; 2] = ["three-spheres", "book"];
 const PATH_LIMIT: u64 = 75_000_000;
 const QUICK_PATH_LIMIT: u64 = 3_000_000;
 
-/// Width of pictures with `--features`, pixels.
-const FEATURES_WIDTH: u32 = 200;
-
 impl BenchOptions {
     /// Checks that the JSON can be written and does not replace a scene file.
     ///
@@ -99,37 +89,16 @@ impl BenchOptions {
         self.threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
     }
 
-    pub fn run_limit_seconds(&self) -> f64 {
-        self.run_limit.unwrap_or(match (self.features, self.quick) {
-            (false, false) => 10.0,
-            (false, true) => 1.0,
-            (true, false) => 0.4,
-            (true, true) => 0.1,
-        })
-    }
-
     /// The scenes to measure.
     ///
     /// # Errors
     /// If one is unknown, not valid or too large.
     pub fn scenes(&self) -> Result<Vec<BenchScene>> {
-        let mut scenes: Vec<BenchScene> = Vec::new();
-        if self.features && self.scene.is_empty() {
-            scenes = Stage::ALL.iter().map(|stage| self.scene_of(stage.recipe())).collect::<Result<_>>()?;
-        }
         let named: Vec<&str> = match self.scene.as_slice() {
-            [] if self.features => BuiltinScene::ALL.iter().map(|scene| scene.name).collect(),
             [] => DEFAULT_SCENES.to_vec(),
             named => named.iter().map(String::as_str).collect(),
         };
-        for name in named {
-            let scene = self.scene_of(sources::scene(name)?)?;
-            // Some stages show a built-in scene.
-            if !self.features || scenes.iter().all(|other| other.job != scene.job) {
-                scenes.push(scene);
-            }
-        }
-        Ok(scenes)
+        named.into_iter().map(|name| self.scene_of(sources::scene(name)?)).collect()
     }
 
     /// A recipe with the changes of the flags.
@@ -141,8 +110,6 @@ impl BenchOptions {
         let mut settings = recipe.settings;
         if let Some((width, height)) = self.size {
             (settings.width, settings.height) = (width, height);
-        } else if self.features {
-            sources::scale(&mut settings, FEATURES_WIDTH);
         }
         settings.sampler = self.sampler.unwrap_or(settings.sampler);
         let job = RenderJob::new(recipe.scene, recipe.camera, settings, recipe.rules)?;
@@ -154,9 +121,6 @@ impl BenchOptions {
     fn samples_of(&self, recipe: &Recipe) -> u64 {
         if let Some(samples) = self.samples {
             return samples;
-        }
-        if self.features {
-            return SAMPLE_LIMIT;
         }
         let (width, height) = self.size.unwrap_or((recipe.settings.width, recipe.settings.height));
         let paths = if self.quick { QUICK_PATH_LIMIT } else { PATH_LIMIT };
@@ -193,6 +157,5 @@ mod tests {
         assert_eq!(samples("--size 1000x1000 --quick", 4), 2);
         assert_eq!(samples("--size 1800x1700 --quick", 5), 1, "less than one");
         assert_eq!(samples("--size 1800x1700 --quick --samples 9", 5), 9);
-        assert_eq!(samples("--features", 5), SAMPLE_LIMIT);
     }
 }

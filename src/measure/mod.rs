@@ -20,7 +20,7 @@ use serde::Serialize;
 use std::path::Path;
 
 /// Version of the JSON, incremented when a key is removed or changes meaning.
-pub const SCHEMA: u32 = 2;
+pub const SCHEMA: u32 = 3;
 
 /// Figures of a machine.
 #[derive(Serialize)]

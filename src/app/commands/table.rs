@@ -416,7 +416,7 @@ impl Command {
     pub fn help(self) -> &'static str {
         match self {
             Command::Stage(stage) => stage.what_is_new,
-            Command::Extreme(case) => case.watch.map_or("An extreme scene", |watch| watch.look_for),
+            Command::Extreme(case) => &case.claim.look_for,
             Command::Recent(_) => "Opens it again",
             Command::Bookmark(_) => "Jumps to this camera",
             Command::Field(_) => "Goes to this field of the controls",

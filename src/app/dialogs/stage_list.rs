@@ -91,7 +91,7 @@ fn row_ui(ui: &mut Ui, row: Command, is_chosen: bool, snapshot: &Snapshot) -> Re
     let is_done = matches!(row, Command::Stage(stage) if snapshot.model.remembered.done.contains(stage.id));
     let (id, over, title) = match row {
         Command::Stage(stage) => (stage.id, stage.section, stage.title),
-        Command::Extreme(case) => (case.id.as_str(), case.family.title, case.title()),
+        Command::Extreme(case) => (case.id.as_str(), case.family.title.as_str(), case.title()),
         _ => ("", "", ""),
     };
     let mut words = LayoutJob::default();

@@ -125,7 +125,7 @@ fn title(ui: &mut Ui, unit: f32, snapshot: &Snapshot) {
 /// The headings and texts below the picture; none of a scene of one's own.
 fn texts(snapshot: &Snapshot) -> [(&'static str, &'static str); 2] {
     let (stage, case) = (snapshot.document().stage(), snapshot.document().case());
-    let watched = case.and_then(|case| Some((case.family.title, case.watch?.look_for)));
+    let watched = case.map(|case| (case.family.title.as_str(), case.claim.look_for.as_str()));
     match (stage, watched) {
         (Some(stage), _) => {
             let look_for = if snapshot.has_sight { stage.sight.caption } else { stage.look_for };

@@ -89,12 +89,11 @@ fn recipe_ui(ui: &mut Ui, document: &Document) {
 
 /// Text about an extreme scene: what makes it difficult and what to watch.
 fn case_ui(ui: &mut Ui, case: &Case) {
-    title(ui, case.family.title, case.title());
-    let watch = case.watch.map_or("", |watch| watch.look_for);
+    title(ui, &case.family.title, case.title());
     for (heading, text) in [
-        ("Watch", watch),
-        ("What is difficult", case.stiff.as_str()),
-        ("What it teaches", case.family.lesson.unwrap_or_default()),
+        ("Watch", case.claim.look_for.as_str()),
+        ("What is difficult", case.difficulty()),
+        ("What it teaches", &case.family.lesson),
     ] {
         paragraph(ui, heading, text);
     }

@@ -42,8 +42,6 @@ pub enum Kind {
     /// The C program.
     #[default]
     Baseline,
-    /// The kernel with code for everything, on the device of the row below it.
-    General,
     /// One ray at a time.
     Scalar,
     /// Packets on one thread.
@@ -67,12 +65,10 @@ pub struct Row {
     pub rays_per_second: Option<Spread>,
     /// Share of the lanes that traced a ray; `None` for the C program and a GPU.
     pub lanes_in_use: Option<f64>,
-    /// Paths per second relative to the C program in the same scene, or to the general kernel on the same device.
+    /// Paths per second relative to the C program in the same scene.
     pub ratio_to_baseline: Option<f64>,
     /// `1 / (MSE seconds)`; `None` if the error is unknown.
     pub efficiency: Option<f64>,
-    /// The parts that its kernel leaves out.
-    pub left_out: Vec<&'static str>,
     /// Why it was not measured.
     pub skipped: Option<String>,
 }
@@ -148,14 +144,11 @@ impl Row {
 }
 
 impl SceneFigures {
-    /// Relates the rows to what they are compared with, which comes before them.
+    /// Relates the rows to the first one, the C program.
     pub fn new(scene: &str, job: &RenderJob, mut rows: Vec<Row>, denoising: Option<Denoising>) -> Self {
         let speed = |row: &Row| row.paths_per_second.map(|spread| spread.median);
-        let mut baseline = None;
+        let baseline = rows.first().and_then(speed);
         for row in &mut rows {
-            if matches!(row.kind, Kind::Baseline | Kind::General) {
-                baseline = speed(row);
-            }
             row.ratio_to_baseline = speed(row).zip(baseline).map(|(own, baseline)| own / baseline);
         }
         let (scene, spheres) = (scene.to_owned(), job.scene().spheres.len());
@@ -178,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn ratio_uses_the_row_compared_with() {
+    fn ratio_is_to_the_first_row() {
         let run =
             |paths| Run { seconds: 2.0, paths, rays: 7 * paths, busy_lanes: 0, offered_lanes: 0, rmse: None };
         let job = Recipe::builtin("metals").unwrap().job().unwrap();

@@ -1,5 +1,4 @@
-//! `weekender bench`: how fast this machine renders, compared with a plain C program, and what kernels gain by leaving
-//! out code that a scene does not need.
+//! `weekender bench`: how fast this machine renders, compared with a plain C program.
 
 mod figures;
 mod text;
@@ -14,7 +13,6 @@ use crate::denoise;
 use crate::film::HALVES;
 use crate::job::render::RenderJob;
 use crate::render_cpu::{CpuOptions, Isa};
-use crate::render_gpu::GpuOptions;
 use crate::system::failure::Failure;
 use crate::system::interrupt::Interrupt;
 use crate::system::terminal;
@@ -76,13 +74,13 @@ impl Bench<'_> {
     }
 
     fn scenes(&self, scenes: &[BenchScene]) -> BenchFigures {
-        let mut candidates = if self.options.features { self.kernels() } else { self.candidates() };
+        let mut candidates = self.candidates();
         let runs = scenes.len() * candidates.len() * (1 + self.options.runs);
         let mut progress = Progress::new(self.options.progress, runs as f64);
         let mut figures = BenchFigures::default();
         for scene in scenes.iter().take_while(|_| !self.is_cancelled()) {
             let rows = self.rows(scene, &mut candidates, &mut progress);
-            let denoising = if self.options.features { None } else { self.denoising(&scene.job) };
+            let denoising = self.denoising(&scene.job);
             figures.scenes.push(SceneFigures::new(&scene.name, &scene.job, rows, denoising));
         }
         progress.display.clear();
@@ -125,31 +123,9 @@ impl Bench<'_> {
                 found.push((Kind::Threads, cpu(best, best.native_lanes(), threads)));
             }
         }
-        found.extend(self.gpu().map(|options| (Kind::Gpu, gpu(options))));
-        found
-    }
-
-    /// For each device, the general kernel and then the scene's own.
-    fn kernels(&self) -> Vec<(Kind, Candidate)> {
-        let mut found = Vec::new();
-        for isa in &self.levels {
-            let general =
-                CpuOptions { isa: Some(*isa), threads: Some(1), general: true, ..CpuOptions::default() };
-            let name = format!("{isa}, general kernel");
-            found.push((Kind::General, Candidate::backend(name, BackendChoice::Cpu(general))));
-            found.push((Kind::Packets, cpu(*isa, isa.native_lanes(), 1)));
-        }
-        if let Some(own) = self.gpu() {
-            let general = BackendChoice::Gpu(GpuOptions { specialise: false, ..own.clone() });
-            found.push((Kind::General, Candidate::backend("GPU, general kernel", general)));
-            found.push((Kind::Gpu, gpu(own)));
-        }
-        found
-    }
-
-    fn gpu(&self) -> Option<GpuOptions> {
         let adapter = self.options.adapter.as_deref();
-        BackendChoice::gpu_if_present(adapter).map(|_| GpuOptions::of_adapter(adapter))
+        found.extend(BackendChoice::gpu_if_present(adapter).map(|choice| (Kind::Gpu, gpu(choice))));
+        found
     }
 
     /// Runs all candidates in turn, so that drift affects all alike.
@@ -161,13 +137,12 @@ impl Bench<'_> {
     ) -> Vec<Row> {
         let mut rows: Vec<Row> =
             candidates.iter_mut().map(|(kind, candidate)| Row::new(*kind, candidate)).collect();
-        let mut most = *samples;
         'turns: for turn in 0..=self.options.runs {
             for (row, (_, candidate)) in rows.iter_mut().zip(&mut *candidates) {
                 if row.skipped.is_none() {
                     progress.at(&format!("{name}: {}", row.name));
                     let outcome = match turn {
-                        0 => self.warm_up(candidate, job, most, row),
+                        0 => self.warm_up(candidate, job, *samples, row),
                         _ => self.run(candidate, job, row),
                     };
                     if self.is_cancelled() {
@@ -175,9 +150,6 @@ impl Bench<'_> {
                     }
                     row.skipped = outcome.err().map(|error| format!("{error:#}"));
                 }
-                // A scene's own kernel takes as many samples as the general one.
-                let is_general = row.kind == Kind::General && row.skipped.is_none();
-                most = if is_general { row.samples_per_pixel } else { *samples };
                 progress.finished(1.0);
             }
         }
@@ -187,13 +159,12 @@ impl Bench<'_> {
 
     /// Warms up with growing sample counts, up to `samples`, and sets how many fit the time limit.
     fn warm_up(&self, candidate: &mut Candidate, job: &RenderJob, samples: u64, row: &mut Row) -> Result<()> {
-        let limit = self.options.run_limit_seconds();
+        let limit = self.options.run_limit;
         let mut tried = HALVES.min(samples);
         loop {
             let seconds = Run::of(&candidate.trace(job, tried, self.cancel)?).seconds;
             if seconds >= WARM_UP_SECONDS.min(0.25 * limit) || tried >= samples {
                 row.samples_per_pixel = affordable(samples, HALVES, seconds / tried as f64, limit);
-                row.left_out = candidate.start()?.diagnostics().kernel.left_out;
                 return Ok(());
             }
             tried = (4 * tried).min(samples);
@@ -218,8 +189,8 @@ fn cpu(isa: Isa, lanes: usize, threads: usize) -> Candidate {
     Candidate::backend(name, BackendChoice::Cpu(options))
 }
 
-fn gpu(options: GpuOptions) -> Candidate {
-    let mut gpu = Candidate::backend("GPU", BackendChoice::Gpu(options));
+fn gpu(choice: BackendChoice) -> Candidate {
+    let mut gpu = Candidate::backend("GPU", choice);
     if let Ok(renderer) = gpu.start() {
         gpu.name = renderer.info().device;
     }

@@ -2,7 +2,7 @@
 
 use super::super::machine::Machine;
 use super::super::table::{counted, or_dash, text_row};
-use super::figures::{BenchFigures, Denoising, Kind, Row, SceneFigures, Spread};
+use super::figures::{BenchFigures, Denoising, Row, SceneFigures, Spread};
 use crate::job::render::RenderSettings;
 
 /// Longest name of a row.
@@ -27,17 +27,11 @@ fn scene(scene: &SceneFigures) -> String {
     let RenderSettings { width, height, max_depth, sampler, .. } = settings;
     let (sampler, spheres) = (sampler.name(), counted(*spheres, "sphere"));
     let runs = counted(rows.iter().map(|row| row.runs.len()).max().unwrap_or(0), "run");
-    let compares_kernels = rows.iter().any(|row| row.kind == Kind::General);
-    let ratio = if compares_kernels { "gain" } else { "x C89" };
-    let heads = ["", "spp", "Mpaths/s", "min", "max", ratio, "Mrays/s", "lanes %", "1/(MSE s)"];
-    let left_out = |row: &Row| match row.left_out.join(", ") {
-        parts if compares_kernels && !parts.is_empty() => format!("    left out: {parts}\n"),
-        _ => String::new(),
-    };
+    let heads = ["", "spp", "Mpaths/s", "min", "max", "x C89", "Mrays/s", "lanes %", "1/(MSE s)"];
     format!(
         "{name}, {width}x{height}, depth {max_depth}, {sampler}, {spheres}; medians of {runs}\n{}{}{}",
         text_row(&SCENE_WIDTHS, &heads),
-        rows.iter().map(|row| scene_row(row) + &left_out(row)).collect::<String>(),
+        rows.iter().map(scene_row).collect::<String>(),
         denoising.as_ref().map(denoising_line).unwrap_or_default()
     )
 }

@@ -1,33 +1,57 @@
-//! A stress case: a scene, what makes it hard, and the expected result.
+//! A stress case: a scene, what makes it hard, and the result that it must have. `assets/stress.toml` lists all of them
+//! and describes its keys.
 
-use crate::job::recipe::{Recipe, plain_name};
-use crate::scene::{Material, Scene};
+use crate::job::recipe::{Recipe, file, plain_name};
+use crate::scene::{Camera, Material, Scene, Sphere};
+use anyhow::{Context, Result};
 use glam::DVec3;
+use serde::Deserialize;
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+use toml::{Table, Value};
 
-/// A family of cases.
-#[derive(Clone, Copy, Debug)]
+macro_rules! files {
+    ($($name:literal)*) => {
+        [$(($name, include_str!(concat!("../../../assets/scenes/stress/", $name, ".toml")))),*]
+    };
+}
+
+/// Scene files that cases are made of, like the scenes of the list.
+const FILES: [(&str, &str); 6] =
+    files!("soap-bubbles" "dust" "contact" "planet-coast" "nested" "closed-room");
+
+/// The list of all cases.
+#[derive(Deserialize)]
+struct List {
+    defaults: Table,
+    scenes: Table,
+    families: Vec<Family>,
+}
+
+#[derive(Debug, Deserialize)]
 pub struct Family {
     /// First part of the ids of its cases.
-    pub id: &'static str,
+    pub id: String,
     /// The subject of its tests, as a heading.
-    pub title: &'static str,
-    /// What it teaches, in a sentence or two, if the window shows cases of it.
-    pub lesson: Option<&'static str>,
-    /// Builds its cases.
-    pub cases: fn(&'static Family) -> Vec<Case>,
+    pub title: String,
+    /// What it teaches, if the window shows cases of it.
+    #[serde(default)]
+    pub lesson: String,
+    #[serde(default)]
+    common: Table,
+    cases: Vec<Table>,
 }
 
 /// The result that a case must have. Radiance is linear.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Expected {
-    /// Every sample has this radiance, RGB: a closed form without noise.
-    Every([f64; 3]),
+    /// Every sample has this radiance: a closed form without noise.
+    Every(f64),
     /// The mean over pixels and channels: a closed form with noise.
     Mean(f64),
-    /// Same samples as another scene on the same backend.
-    Same(Box<Recipe>),
+    /// Same samples as this scene of the list on the same backend.
+    Same(String),
     /// Same samples as the `f64` reference.
     Reference,
 }
@@ -35,44 +59,126 @@ pub enum Expected {
 impl fmt::Display for Expected {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Expected::Every([red, green, blue]) if red == green && green == blue => write!(f, "{red}"),
-            Expected::Every([red, green, blue]) => write!(f, "{red} {green} {blue}"),
+            Expected::Every(value) => write!(f, "{value}"),
             Expected::Mean(value) => write!(f, "{value} (mean)"),
-            Expected::Same(other) => write!(f, "as {}", other.name),
+            Expected::Same(other) => write!(f, "as {other}"),
             Expected::Reference => f.write_str("as f64"),
         }
     }
 }
 
-/// How the window presents a case.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Watch {
-    /// Title in the menu.
-    pub title: &'static str,
-    /// What to look for, in a sentence or two.
-    pub look_for: &'static str,
+/// What a case says about its scene.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Claim {
+    #[serde(default)]
+    name: String,
+    difficulty: Option<String>,
+    pub expected: Expected,
+    /// How the expected result is derived.
+    pub why: String,
+    /// Allowed difference of the mean apart from noise, linear radiance.
+    pub tolerance: f64,
+    /// Title in the window's menu; `None` if the window does not show it.
+    title: Option<String>,
+    /// What to look for in the window.
+    #[serde(default)]
+    pub look_for: String,
 }
 
-/// Size of a case's picture in the window, pixels.
-const SHOWN_SIZE: [u32; 2] = [600, 400];
+/// A claim, and how the scene that it is about is made.
+#[derive(Deserialize)]
+struct Entry {
+    #[serde(flatten)]
+    claim: Claim,
+    scene: Option<String>,
+    repeat: u32,
+    step: DVec3,
+    shrink: f64,
+    scale: f64,
+    offset: DVec3,
+    unit: f64,
+    #[serde(flatten)]
+    file: Table,
+}
+
+impl Entry {
+    /// The last of `parts`, on top of all that it builds on.
+    fn new(list: &List, parts: &[&Table]) -> Result<Self> {
+        let mut table = list.defaults.clone();
+        let of = parts.iter().rev().find_map(|part| part.get("of")?.as_str());
+        let of = of.and_then(|of| list.scenes.get(of)?.as_table());
+        of.into_iter().chain(parts.iter().copied()).for_each(|part| merge(&mut table, part));
+        table.remove("of");
+        Ok(Entry::deserialize(table)?)
+    }
+
+    fn recipe(mut self, name: &str) -> Result<Recipe> {
+        // Only the materials that it uses.
+        let spheres = self.file.get("spheres").map(Value::to_string).unwrap_or_default();
+        if let Some(Value::Table(materials)) = self.file.get_mut("materials") {
+            materials.retain(|name, _| spheres.contains(name.as_str()));
+        }
+        let mut recipe = file::parse(&self.file.to_string(), name)?;
+        let scene = Arc::make_mut(&mut recipe.scene);
+        let spheres = std::mem::take(&mut scene.spheres);
+        for index in 0..self.repeat {
+            let (count, share) = (f64::from(index), f64::from(index) / f64::from(self.repeat));
+            scene.spheres.extend(spheres.iter().map(|sphere| Sphere {
+                center: sphere.center + count * self.step,
+                radius: sphere.radius - share * self.shrink,
+                ..*sphere
+            }));
+        }
+        if let Some(builtin) = &self.scene {
+            let base = Scene::clone(&Recipe::find(builtin)?.scene);
+            let own = std::mem::replace(scene, base);
+            let first = scene.materials.len();
+            scene.materials.extend(own.materials);
+            let spheres = own.spheres.iter().map(|own| Sphere { material: first + own.material, ..*own });
+            scene.spheres.extend(spheres);
+        }
+        Ok(moved(&recipe, self.scale, self.offset))
+    }
+}
+
+/// Adds the values of `over`, which replace others; tables, except for an expected result, keep their other keys.
+fn merge(table: &mut Table, over: &Table) {
+    for (key, value) in over {
+        match (table.get_mut(key), value) {
+            (Some(Value::Table(old)), Value::Table(new)) if key != "expected" => merge(old, new),
+            _ => _ = table.insert(key.clone(), value.clone()),
+        }
+    }
+}
+
+/// Everything scaled by `factor`, then moved by `offset`: spheres, eye and focus.
+pub fn moved(recipe: &Recipe, factor: f64, offset: DVec3) -> Recipe {
+    let place = |point: DVec3| factor * point + offset;
+    let mut scene = Scene::clone(&recipe.scene);
+    for sphere in &mut scene.spheres {
+        sphere.center = place(sphere.center);
+        sphere.radius *= factor;
+    }
+    let camera = Camera {
+        look_from: place(recipe.camera.look_from),
+        look_at: place(recipe.camera.look_at),
+        focus_distance: recipe.camera.focus_distance.map(|distance| factor * distance),
+        ..recipe.camera
+    };
+    Recipe { scene: Arc::new(scene), camera, ..recipe.clone() }
+}
 
 #[derive(Clone, Debug)]
 pub struct Case {
     /// The family's id and a name within the family: `copies/110`.
     pub id: String,
     pub family: &'static Family,
-    /// Why the scene is hard, in a sentence.
-    pub stiff: String,
+    pub claim: Claim,
     pub recipe: Recipe,
-    /// Typical length near the eye, scene units; the distant spheres are a thousand times as far away.
-    pub unit: f64,
-    pub expected: Expected,
-    /// How the expected result is derived, in a sentence.
-    pub why: &'static str,
-    /// Allowed difference of the mean apart from noise, linear radiance.
-    pub tolerance: f64,
-    /// How the window shows it; `None` if there is nothing to see.
-    pub watch: Option<Watch>,
+    /// The scene that must give the same samples, if one must.
+    pub twin: Option<Recipe>,
+    /// Typical length near the eye, scene units.
+    unit: f64,
 }
 
 impl PartialEq for Case {
@@ -86,49 +192,32 @@ impl Eq for Case {}
 /// From this many spheres on, every backend builds a hierarchy anyway, so distant ones change nothing.
 const HIERARCHY_SPHERES: usize = 24;
 
+/// Size of a case's picture in the window, pixels.
+const SHOWN_SIZE: [u32; 2] = [600, 400];
+
 impl Case {
-    /// Expects the `f64` reference's result unless a builder method below changes that.
-    pub fn new(
-        family: &'static Family,
-        name: impl fmt::Display,
-        stiff: impl Into<String>,
-        recipe: Recipe,
-    ) -> Self {
-        let id = format!("{}/{name}", family.id);
-        Case {
-            recipe: Recipe { name: id.clone(), ..recipe },
-            id,
-            family,
-            stiff: stiff.into(),
-            unit: 1.0,
-            expected: Expected::Reference,
-            why: "f64 has digits to spare at these scales",
-            tolerance: 2e-6,
-            watch: None,
-        }
+    fn new(list: &'static List, family: &'static Family, own: &Table) -> Result<Self> {
+        let entry = Entry::new(list, &[&family.common, own])?;
+        let (claim, unit) = (entry.claim.clone(), entry.unit * entry.scale);
+        let id = format!("{}/{}", family.id, claim.name);
+        let twin = match &claim.expected {
+            Expected::Same(name) => {
+                let scene = list.scenes.get(name).and_then(Value::as_table).context("no such scene")?;
+                Some(Entry::new(list, &[scene])?.recipe(name)?)
+            }
+            _ => None,
+        };
+        Ok(Case { recipe: entry.recipe(&id)?, id, family, claim, twin, unit })
     }
 
-    #[must_use]
-    pub fn expect(self, expected: Expected, why: &'static str, tolerance: f64) -> Self {
-        Case { expected, why, tolerance, ..self }
+    /// The menu title, or the id of a case the window does not show.
+    pub fn title(&self) -> &str {
+        self.claim.title.as_deref().unwrap_or(&self.id)
     }
 
-    /// Expects every sample to be this grey.
-    #[must_use]
-    pub fn every(self, value: f64, why: &'static str) -> Self {
-        self.expect(Expected::Every([value; 3]), why, 1e-6)
-    }
-
-    /// Shows the case in the window.
-    #[must_use]
-    pub fn watched(self, title: &'static str, look_for: &'static str) -> Self {
-        Case { watch: Some(Watch { title, look_for }), ..self }
-    }
-
-    /// Sets the typical length near the eye.
-    #[must_use]
-    pub fn of_unit(self, unit: f64) -> Self {
-        Case { unit, ..self }
+    /// Why the scene is hard.
+    pub fn difficulty(&self) -> &str {
+        self.claim.difficulty.as_deref().unwrap_or(&self.family.title)
     }
 
     /// The picture at the window's size, with a name that is a valid file name.
@@ -136,11 +225,6 @@ impl Case {
         let mut recipe = Recipe { name: plain_name(&self.id), samples_per_pixel: 256, ..self.recipe.clone() };
         [recipe.settings.width, recipe.settings.height] = SHOWN_SIZE;
         recipe
-    }
-
-    /// The menu title, or the id of a case the window does not show.
-    pub fn title(&self) -> &str {
-        self.watch.map_or(&self.id, |watch| watch.title)
     }
 
     /// The names and recipes to render: a small scene also with distant spheres, which switch the hierarchy on.
@@ -151,6 +235,41 @@ impl Case {
         }
         forms
     }
+}
+
+#[expect(clippy::expect_used, reason = "the list is part of the program, and a test reads all of it")]
+fn list() -> &'static List {
+    static LIST: OnceLock<List> = OnceLock::new();
+    LIST.get_or_init(|| {
+        let mut list: List = toml::from_str(include_str!("../../../assets/stress.toml")).expect("a list");
+        for (name, text) in FILES {
+            list.scenes.insert(name.to_owned(), Value::Table(toml::from_str(text).expect("a scene file")));
+        }
+        list
+    })
+}
+
+#[expect(clippy::expect_used, reason = "the list is part of the program, and a test reads all of it")]
+fn build(families: impl Iterator<Item = &'static Family>, has: fn(&Table) -> bool) -> Vec<Case> {
+    let tables = families.flat_map(|family| family.cases.iter().map(move |table| (family, table)));
+    let chosen = tables.filter(|(_, table)| has(table));
+    chosen.map(|(family, table)| Case::new(list(), family, table).expect("a case")).collect()
+}
+
+pub fn families() -> &'static [Family] {
+    &list().families
+}
+
+/// The cases shown in the window. The others are not built: their largest scenes have a hundred thousand spheres.
+pub fn shown_cases() -> &'static [Case] {
+    static SHOWN: OnceLock<Vec<Case>> = OnceLock::new();
+    SHOWN.get_or_init(|| build(families().iter().rev(), |table| table.contains_key("title")))
+}
+
+/// All cases in the table's order.
+pub fn cases() -> &'static [Case] {
+    static CASES: OnceLock<Vec<Case>> = OnceLock::new();
+    CASES.get_or_init(|| build(families().iter(), |_| true))
 }
 
 const FAR_COUNT: usize = 40;
@@ -181,21 +300,39 @@ pub fn with_far_spheres(recipe: &Recipe, unit: f64) -> Recipe {
 
 #[cfg(test)]
 mod tests {
-    use super::super::families::FAMILIES;
-    use super::super::families::build::one_ball;
     use super::*;
+    use std::collections::HashSet;
 
     #[test]
-    fn small_scenes_also_get_hierarchy() {
-        for (count, forms) in [(23, &["plain", "+40"][..]), (24, &["plain"][..])] {
-            let mut recipe = one_ball();
-            let scene = Arc::make_mut(&mut recipe.scene);
-            scene.spheres = vec![scene.spheres[0]; count];
-            let case = Case::new(&FAMILIES[0], count, "copies", recipe);
-            let found = case.forms();
-            assert_eq!(found.iter().map(|(form, _)| *form).collect::<Vec<_>>(), forms, "{count}");
-            assert_eq!(found[0].1.scene.spheres.len(), count);
+    fn every_case_is_a_valid_picture_in_each_form() {
+        let ids: HashSet<&str> = cases().iter().map(|case| case.id.as_str()).collect();
+        assert_eq!((ids.len(), cases().len()), (158, 158));
+        for case in cases() {
+            let forms = case.forms().into_iter().chain(case.twin.clone().map(|twin| ("twin", twin)));
+            for (form, recipe) in forms {
+                assert!(recipe.job().is_ok(), "{} {form}: {:?}", case.id, recipe.job().err());
+            }
+            let is_small = case.recipe.scene.spheres.len() < HIERARCHY_SPHERES;
+            assert_eq!(case.forms().len(), 1 + usize::from(is_small), "{}", case.id);
         }
+        let shown: Vec<&Case> = cases().iter().filter(|case| case.claim.title.is_some()).collect();
+        assert_eq!(shown.len(), shown_cases().len());
+        assert!(shown.iter().all(|case| !case.claim.look_for.is_empty() && !case.family.lesson.is_empty()));
+    }
+
+    #[test]
+    fn entries_build_on_others() {
+        let find = |id: &str| cases().iter().find(|case| case.id == id).unwrap();
+        let shells = &find("shells/50").recipe.scene.spheres;
+        assert_eq!((shells.len(), shells[0].radius, shells[49].radius), (50, 1.0, 1.0 - 0.9 * 49.0 / 50.0));
+        let [first, second] = find("shifts/1e-3-x").recipe.scene.spheres[..] else { panic!() };
+        assert_eq!(second.center - first.center, DVec3::X * 1e-3);
+        let (tame, moved) = (find("scaled/1e3").twin.as_ref().unwrap(), &find("scaled/1e3").recipe);
+        assert_eq!(moved.camera.look_from, 1000.0 * tame.camera.look_from);
+        assert_eq!(moved.scene.materials, tame.scene.materials);
+        assert_eq!(find("odd/huge").recipe.scene.spheres.len(), 4002);
+        assert_eq!(find("cavity/white-alone").recipe.scene.materials.len(), 1, "only those in use");
+        assert_eq!(find("file/nested").recipe.settings.width, 24);
     }
 
     #[test]

@@ -5,16 +5,12 @@
 //! where `f64` has digits to spare. The window shows the cases worth looking at.
 
 mod case;
-pub mod families;
 mod judge;
 mod report;
-mod suite;
 
-pub use case::{Case, Expected, Family, Watch, with_far_spheres};
-pub use families::{cases, shown_cases};
+pub use case::{Case, Claim, Expected, Family, cases, moved, shown_cases, with_far_spheres};
 pub use judge::{Difference, Level, Verdict};
-pub use report::{BookMeasured, CaseReport, Measured, StressReport};
-pub use suite::{Suite, by_the_book, trace};
+pub use report::{CaseReport, Measured, Suite, by_the_book, trace};
 
 use super::machine::Machine;
 use super::progress::Progress;
@@ -25,10 +21,10 @@ use crate::render_cpu::{CpuOptions, Isa};
 use crate::system::failure::Failure;
 use crate::system::files::check_writable;
 use crate::system::interrupt::Interrupt;
-use crate::system::terminal;
+use crate::system::terminal::print_beside;
 use anyhow::{Result, anyhow};
+use report::StressReport;
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// Runs the suite, prints the table and writes the files. [`Failure::Input`] if nothing was run; [`Failure::Run`]
@@ -37,15 +33,14 @@ pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
     options.json.as_deref().map_or(Ok(()), check_writable).map_err(Failure::input)?;
     let chosen: Vec<&Case> = cases().iter().filter(|case| case.id.contains(&options.filter)).collect();
     if chosen.is_empty() {
-        let ids: Vec<&str> = families::FAMILIES.iter().map(|family| family.id).collect();
+        let ids: Vec<&str> = case::families().iter().map(|family| family.id.as_str()).collect();
         let error =
             anyhow!("no case id contains {:?}; use one of the families {}", options.filter, ids.join(", "));
         return Err(Failure::Input(error));
     }
-    let levels = options.levels();
-    let tracers = tracers(&levels, options.adapter.as_deref()).map_err(Failure::Input)?;
+    let tracers = tracers(&options.levels(), options.adapter.as_deref()).map_err(Failure::Input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
-    let report = suite(options, &chosen, tracers, interrupt.flag()).map_err(Failure::Run)?;
+    let report = suite(options, &chosen, Suite::new(tracers), &interrupt).map_err(Failure::Run)?;
     Ok(match report.is_right() {
         _ if report.interrupted => interrupt.exit_code(),
         true => ExitCode::SUCCESS,
@@ -72,31 +67,29 @@ fn tracers(levels: &[Isa], adapter: Option<&str>) -> Result<Vec<Candidate>> {
 fn suite(
     options: &StressOptions,
     chosen: &[&Case],
-    tracers: Vec<Candidate>,
-    interrupt: &AtomicBool,
+    mut suite: Suite,
+    interrupt: &Interrupt,
 ) -> Result<StressReport> {
     let (begin, machine) = (Instant::now(), Machine::look());
     let mut progress = Progress::new(options.progress, chosen.len() as f64);
-    let mut suite = Suite::new(tracers);
     let mut report = StressReport { backends: suite.names(), ..StressReport::default() };
     let json = options.json.as_deref();
     // Write the figures even if the table cannot be printed.
-    let mut printed = terminal::print_beside(json, &report::head());
+    let mut printed = print_beside(json, &report::head());
     for case in chosen {
         progress.at(&case.id);
-        let found = suite.run(case, interrupt);
-        if interrupt.load(Ordering::Relaxed) {
+        let found = suite.run(case, interrupt.flag());
+        if interrupt.is_set() {
             report.interrupted = true;
             break;
         }
-        let row = || terminal::print_beside(json, &found.text());
-        printed = printed.and(progress.display.above(row));
+        printed = printed.and(progress.display.above(|| print_beside(json, &found.text())));
         progress.finished(1.0);
         report.cases.push(found);
     }
     progress.display.clear();
     report.seconds = begin.elapsed().as_secs_f64();
-    printed = printed.and(terminal::print_beside(json, &report.summary(chosen.len())));
+    printed = printed.and(print_beside(json, &report.summary(chosen.len())));
     json.map_or(Ok(()), |target| write_json(target, &machine, &report))?;
     printed.map(|()| report)
 }

@@ -1,21 +1,12 @@
 //! The normal distribution, and the conversion of Student's distribution to it.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
+use statrs::function::erf::erfc_inv;
 
-/// The probability that a normal number is farther from 0 than `z >= 0`, on either side.
-pub fn two_sided_tail(z: f64) -> f64 {
-    libm::erfc(z / std::f64::consts::SQRT_2)
-}
-
-/// The `z` for which [`two_sided_tail`] is `chance`, between 0 and 1. 1 and above give 0, and 0 gives a number that is
-/// never exceeded.
-pub fn two_sided_quantile(chance: f64) -> f64 {
-    let (mut low, mut high) = (0.0, 40.0);
-    for _ in 0..80 {
-        let middle = 0.5 * (low + high);
-        if two_sided_tail(middle) > chance { low = middle } else { high = middle }
-    }
-    0.5 * (low + high)
+/// The `z >= 0` that a normal number exceeds, on either side of 0, with the probability `chance`: 0 for 1 and above, and
+/// a number that is never exceeded for 0.
+fn two_sided_quantile(chance: f64) -> f64 {
+    (std::f64::consts::SQRT_2 * erfc_inv(chance)).clamp(0.0, 40.0)
 }
 
 /// The limit that the largest absolute value of `count` independent normal numbers exceeds with the probability
@@ -43,11 +34,10 @@ pub fn from_student(t: f64, freedom: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
 
     #[test]
     fn known_quantiles() {
-        for (chance, z) in [(0.05, 1.959_964), (0.01, 2.575_829), (6.334e-5, 4.0), (5.733e-7, 5.0)] {
+        for (chance, z) in [(0.05, 1.959_964), (0.01, 2.575_829), (6.334e-5, 4.0), (5.733e-7, 5.0), (1.0, 0.0)] {
             assert!(
                 (two_sided_quantile(chance) - z).abs() < 2e-5,
                 "{chance}: {}",
@@ -79,12 +69,5 @@ mod tests {
         assert_eq!(from_student(4.0, 1e9), 4.0);
         assert!((from_student(4.0, 9e6) - 4.0).abs() < 1e-5);
         assert!(from_student(f64::NAN, 5.0).is_nan() && from_student(1e300, 5.0) > 30.0);
-    }
-
-    proptest! {
-        #[test]
-        fn quantile_and_tail_are_inverse(z in 0.0..8.0_f64) {
-            prop_assert!((two_sided_quantile(two_sided_tail(z)) - z).abs() < 1e-6);
-        }
     }
 }
