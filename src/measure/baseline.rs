@@ -20,9 +20,6 @@ pub const SOURCE: &str = include_str!("../../reference/rt_weekend.c");
 
 pub const FLAGS: [&str; 5] = ["-std=c89", "-pedantic", "-Wall", "-Wextra", "-O2"];
 
-/// How often to check for cancellation and the end.
-const POLL: Duration = Duration::from_millis(5);
-
 /// The compiled program. As a renderer it draws its own random numbers, and its films have one half.
 pub struct Baseline {
     directory: TempDir,
@@ -69,7 +66,8 @@ impl Baseline {
         self.directory.path().join(name)
     }
 
-    /// Renders samples of the prepared job to `picture.pfm`.
+    /// Renders samples of the prepared job to `picture.pfm`. Ctrl+C ends the program, too; any other cancellation waits
+    /// for it.
     fn run(&self, job: &RenderJob, samples: &Range<u64>, cancel: &AtomicBool) -> Result<Stats, RenderError> {
         let settings = job.settings();
         // Give each range of samples its own random numbers. The program takes 31-bit seeds.
@@ -81,24 +79,12 @@ impl Baseline {
         command.arg("--scene").arg(self.file("scene.txt")).arg("--out").arg(self.file("picture.pfm"));
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().map_err(failed)?;
-        let stdout = child.stdout.take();
-        let stats = std::thread::scope(|scope| {
-            let reader = scope.spawn(|| {
-                let mut lines = BufReader::new(stdout?).lines().map_while(Result::ok);
-                lines.find(|line| line == "tracing")?;
-                let begin = Instant::now();
-                let line = lines.next()?;
-                figures(&line, begin.elapsed())
-            });
-            while !reader.is_finished() {
-                if cancel.load(Ordering::Relaxed) {
-                    // Fails if the process has just ended on its own.
-                    let _ = child.kill();
-                }
-                std::thread::sleep(POLL);
-            }
-            // A panic of the reader leaves the run without figures.
-            reader.join().ok().flatten()
+        let lines = child.stdout.take().map(|output| BufReader::new(output).lines().map_while(Result::ok));
+        let stats = lines.and_then(|mut lines| {
+            lines.find(|line| line == "tracing")?;
+            let begin = Instant::now();
+            let line = lines.next()?;
+            figures(&line, begin.elapsed())
         });
         let output = child.wait_with_output().map_err(failed)?;
         match stats {
@@ -136,6 +122,9 @@ impl Renderer for Baseline {
         &Control { cancel, .. }: &Control,
     ) -> Result<Outcome, RenderError> {
         self.prepare(job, cancel)?;
+        if cancel.load(Ordering::Relaxed) {
+            return Err(RenderError::Cancelled);
+        }
         let stats = self.run(job, &range, cancel)?;
         // The encoding applies only to integers; a PFM holds floats.
         let picture = read_picture(&self.file("picture.pfm"), None).map_err(failed)?.linear(Encoding::Srgb);

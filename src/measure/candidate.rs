@@ -30,12 +30,8 @@ pub struct Traced {
 
 impl Candidate {
     /// A backend, or the plain C program, which starts on first use.
-    pub fn new(name: impl Into<String>, backend: Option<BackendChoice>) -> Self {
-        Candidate { name: name.into(), backend, renderer: None }
-    }
-
-    pub fn backend(name: impl Into<String>, choice: BackendChoice) -> Self {
-        Candidate::new(name, Some(choice))
+    pub fn new(name: impl Into<String>, backend: impl Into<Option<BackendChoice>>) -> Self {
+        Candidate { name: name.into(), backend: backend.into(), renderer: None }
     }
 
     pub fn is_baseline(&self) -> bool {

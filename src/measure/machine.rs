@@ -7,7 +7,6 @@ use std::fs;
 
 #[derive(Clone, Debug, Serialize)]
 pub struct Machine {
-    pub version: &'static str,
     pub processor: String,
     /// Number of threads that the system can run at once.
     pub cores: usize,
@@ -20,7 +19,6 @@ pub struct Machine {
 impl Machine {
     pub fn look() -> Self {
         Machine {
-            version: env!("CARGO_PKG_VERSION"),
             processor: processor(&fs::read_to_string("/proc/cpuinfo").unwrap_or_default()),
             cores: std::thread::available_parallelism().map_or(1, usize::from),
             levels: Isa::available().into_iter().map(Isa::name).collect(),
@@ -35,7 +33,7 @@ impl Machine {
         let level = self.levels.last().copied().unwrap_or("no level");
         let load = self.load_at_start.map_or(String::new(), |load| format!(", load {load:.2} at the start"));
         let threads = counted(self.cores, "thread");
-        format!("Weekender {}, {}, {threads}, {level}{load}", self.version, self.processor)
+        format!("Weekender {}, {}, {threads}, {level}{load}", env!("CARGO_PKG_VERSION"), self.processor)
     }
 }
 

@@ -3,13 +3,12 @@
 //! plotters draws them; no other room uses it. Text is set in the window's embedded font, so no system library is
 //! needed.
 
-use anyhow::{Context, Result, anyhow, ensure};
+use anyhow::{Result, anyhow};
 use plotters::coord::Shift;
 use plotters::coord::combinators::{LogCoord, WithKeyPoints};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontStyle, register_font};
-use std::sync::OnceLock;
 
 /// A picture of one or more charts.
 #[derive(Clone, Debug)]
@@ -52,15 +51,9 @@ pub struct Series {
     pub name: String,
     /// In the order they are joined. Points that an axis cannot show are left out.
     pub points: Vec<Point>,
-    pub look: Look,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Look {
-    /// A line with a mark at each point, in the series' own colour.
-    Measured,
-    /// A thin dashed grey line, for comparison with a law.
-    Guide,
+    /// Whether it is a thin dashed grey line for comparison with a law, not a line with a mark at each point in its own
+    /// colour.
+    pub is_guide: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -111,9 +104,8 @@ type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 /// # Errors
 /// If plotters or the font fails.
 pub fn svg(figure: &Figure) -> Result<String> {
-    static HAS_FONT: OnceLock<bool> = OnceLock::new();
-    let register = || register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT).is_ok();
-    ensure!(*HAS_FONT.get_or_init(register), "the font of the charts cannot be read");
+    register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
+        .map_err(|_| anyhow!("the font of the charts cannot be read"))?;
     let mut text = String::new();
     let [width, height] = figure.size;
     let area = SVGBackend::with_string(&mut text, (width, height)).into_drawing_area();
@@ -129,15 +121,14 @@ pub fn svg(figure: &Figure) -> Result<String> {
 /// # Errors
 /// As for [`svg`].
 pub fn page_svg(figure: &Figure, label: &str) -> Result<String> {
-    let text = svg(figure)?;
-    let inside = text.split_once("<svg").and_then(|(_, text)| text.split_once('>'));
-    let (_, inside) = inside.context("the chart has no <svg> element")?;
     let [width, height] = figure.size;
-    let page = format!("<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{label}\">{inside}");
+    let size = format!("width=\"{width}\" height=\"{height}\"");
+    let page = svg(figure)?.replacen(&size, &format!("role=\"img\" aria-label=\"{label}\""), 1);
     let named = [(INK, "currentColor"), (FAINT_INK, "var(--muted)"), (GUIDE, "var(--muted)")];
     let grid = [(GRID, "var(--line)"), (FINE_GRID, "var(--line-fine)"), (WHITE, "none")];
     let named = named.into_iter().chain(grid).map(|(color, name)| (color, name.to_owned()));
-    let series = PALETTE.iter().enumerate().map(|(index, color)| (*color, format!("var(--series-{})", index + 1)));
+    let series =
+        PALETTE.iter().enumerate().map(|(index, color)| (*color, format!("var(--series-{})", index + 1)));
     Ok(named.chain(series).fold(page, |page, (RGBColor(r, g, b), name)| {
         page.replace(&format!("\"#{r:02X}{g:02X}{b:02X}\""), &format!("\"{name}\""))
     }))
@@ -187,7 +178,7 @@ fn label(value: &f64) -> String {
 fn draw_chart(area: &Area, chart: &LineChart) -> Drawn {
     let is_narrow = area.dim_in_pixel().0 < NARROW;
     let mut builder = ChartBuilder::on(area);
-    let measured = chart.series.iter().filter(|series| series.look == Look::Measured);
+    let measured = chart.series.iter().filter(|series| !series.is_guide);
     let longest = measured.map(|series| series.name.chars().count()).max().unwrap_or(0);
     builder.margin(8).margin_right(18 + if is_narrow { 0 } else { 15 * longest as i32 / 2 });
     builder.x_label_area_size(46).y_label_area_size(64);
@@ -213,33 +204,29 @@ fn draw_chart(area: &Area, chart: &LineChart) -> Drawn {
     let mut ends = Vec::new();
     for series in &chart.series {
         let line = |y: fn(&Point) -> Option<f64>| {
-            let shown = move |point: &Point| Some((point.x, y(point)?)).filter(|(x, y)| is_shown(*x) && is_shown(*y));
+            let shown =
+                move |point: &Point| Some((point.x, y(point)?)).filter(|(x, y)| is_shown(*x) && is_shown(*y));
             series.points.iter().filter_map(shown)
         };
         let points: Vec<(f64, f64)> = line(|point| Some(point.y)).collect();
         // The name of a law is at its start.
-        let end = if series.look == Look::Guide { points.first() } else { points.last() };
+        let end = if series.is_guide { points.first() } else { points.last() };
         let end = end.filter(|_| !series.name.is_empty());
         let end = end.map(|end| context.plotting_area().map_coordinate(end));
-        let style = match series.look {
-            Look::Guide => {
-                let style = GUIDE.stroke_width(2);
-                context.draw_series(DashedLineSeries::new(points, 7, 5, style))?;
-                style
+        let mut style = GUIDE.stroke_width(2);
+        if series.is_guide {
+            context.draw_series(DashedLineSeries::new(points, 7, 5, style))?;
+        } else {
+            let color = colors.next().unwrap_or(&INK);
+            let mut band: Vec<(f64, f64)> = line(|point| Some(point.spread?[1])).collect();
+            band.reverse();
+            band.splice(0..0, line(|point| Some(point.spread?[0])));
+            if band.len() > 2 {
+                context.draw_series([Polygon::new(band, color.mix(0.22).filled())])?;
             }
-            Look::Measured => {
-                let color = colors.next().unwrap_or(&INK);
-                let mut band: Vec<(f64, f64)> = line(|point| Some(point.spread?[1])).collect();
-                band.reverse();
-                band.splice(0..0, line(|point| Some(point.spread?[0])));
-                if band.len() > 2 {
-                    context.draw_series([Polygon::new(band, color.mix(0.22).filled())])?;
-                }
-                let style = color.filled().stroke_width(2);
-                context.draw_series(LineSeries::new(points, style).point_size(5))?;
-                style
-            }
-        };
+            style = color.filled().stroke_width(2);
+            context.draw_series(LineSeries::new(points, style).point_size(5))?;
+        }
         ends.extend(end.map(|end| (series, end, style)));
     }
     // The names stand beside the plot, where no line touches them; those that would overlap move apart. In a narrow chart
@@ -248,11 +235,11 @@ fn draw_chart(area: &Area, chart: &LineChart) -> Drawn {
     let (columns, rows) = context.plotting_area().get_pixel_range();
     let column = if is_narrow { columns.start + 34 } else { columns.end + 14 } - left;
     ends.sort_by_key(|(_, (_, y), _)| *y);
-    let named = ends.iter().filter(|(series, ..)| series.look == Look::Measured).count() as i32;
+    let named = ends.iter().filter(|(series, ..)| !series.is_guide).count() as i32;
     let mut free = if is_narrow { rows.end - top - 17 * named } else { i32::MIN };
     for (series, (x, y), style) in ends {
         let text = (FONT, 14, &INK).into_text_style(area);
-        if series.look == Look::Guide {
+        if series.is_guide {
             let pos = Pos::new(HPos::Left, VPos::Bottom);
             area.draw_text(&series.name, &text.pos(pos), (x - left, y - top - 3))?;
             continue;

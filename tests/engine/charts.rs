@@ -1,6 +1,6 @@
 //! Charts as SVG.
 
-use weekender::numbers::chart::{Axis, Figure, LineChart, Look, Point, Series, svg};
+use weekender::numbers::chart::{Axis, Figure, LineChart, Point, Series, svg};
 
 fn figure(series: Vec<Series>) -> Figure {
     let axis = |label: &str| Axis { label: label.to_owned(), limits: [1e-300, 1e300] };
@@ -13,8 +13,8 @@ fn figure(series: Vec<Series>) -> Figure {
 fn unshowable_points_are_left_out() {
     let values = [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-300, 1e300];
     let points = values.map(|y| Point { x: y, y, spread: Some([-y, y]) }).to_vec();
-    let odd = Series { name: "odd".to_owned(), points, look: Look::Measured };
-    let none = Series { name: "none".to_owned(), points: Vec::new(), look: Look::Guide };
+    let odd = Series { name: "odd".to_owned(), points, is_guide: false };
+    let none = Series { name: "none".to_owned(), points: Vec::new(), is_guide: true };
     svg(&figure(vec![odd, none])).unwrap();
     svg(&Figure { panels: Vec::new(), ..figure(Vec::new()) }).unwrap();
     let mut empty = figure(Vec::new());

@@ -13,11 +13,12 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 use weekender::backends::BackendChoice;
 use weekender::job::recipe::{Recipe, file};
-use weekender::measure::stress::families::build::{Ball, eye, matte, moved, of_scene, scene, sized};
-use weekender::measure::stress::{Difference, Level, trace, with_far_spheres};
+use weekender::job::render::RenderSettings;
+use weekender::measure::stress::{Difference, Level, moved, trace, with_far_spheres};
 use weekender::measure::{Candidate, Traced};
 use weekender::render_cpu::{CpuOptions, Isa};
-use weekender::scene::{Material, Scene, Sky};
+use weekender::scene::{Camera, Material, Scene, Sky};
+use weekender::stages::Rules;
 
 /// Allowed difference of a mean apart from noise, linear radiance.
 const TOLERANCE: f64 = 1e-5;
@@ -73,6 +74,21 @@ fn relation() -> impl Strategy<Value = Relation> + Clone {
     ]
 }
 
+/// Centre, radius and material.
+type Ball = (DVec3, f64, Material);
+
+/// Balls with equal materials share one.
+fn scene(balls: Vec<Ball>, sky: Sky) -> Scene {
+    let mut scene = Scene { sky, ..Scene::default() };
+    for (center, radius, material) in balls {
+        let known = scene.materials.iter().position(|named| named.material == material);
+        let new = scene.materials.len().to_string();
+        let index = known.unwrap_or_else(|| scene.add_material(new, material));
+        scene.add_sphere(center, radius, index);
+    }
+    scene
+}
+
 type Described = (Relation, DVec3, Material, prop::sample::Index);
 
 fn ball((relation, direction, material, other): Described, others: &[Ball]) -> Ball {
@@ -118,8 +134,9 @@ fn recipe() -> impl Strategy<Value = Recipe> {
         let mut balls: Vec<Ball> = Vec::new();
         described.into_iter().for_each(|next| balls.push(ball(next, &balls)));
         if let Some(radius) = ground {
+            let ground = Material::Lambertian { albedo: DVec3::splat(0.5) };
             let lowest = balls.iter().map(|(center, r, _)| center.y - r).fold(f64::INFINITY, f64::min);
-            balls.push((DVec3::new(0.0, lowest - radius, 0.0), radius, matte(0.5)));
+            balls.push((DVec3::new(0.0, lowest - radius, 0.0), radius, ground));
         }
         let (center, radius, _) = balls[from.2.index(balls.len())];
         let look_from = center + radius * from.0 * from.1;
@@ -127,11 +144,22 @@ fn recipe() -> impl Strategy<Value = Recipe> {
         let look_at = center + 0.3 * radius * at.0;
         let look_at = if look_from == look_at { look_from + DVec3::X } else { look_at };
         let (vfov, lens, depth, seed, (factor, offset)) = rest;
-        let mut camera = eye(look_from, look_at, vfov);
-        camera.defocus_angle_degrees = lens;
-        let mut recipe = of_scene(scene(balls, sky), camera);
-        (recipe.settings.max_depth, recipe.settings.seed) = (depth as u32, seed);
-        sized(moved(&recipe, factor, factor * offset), [16, 12], 16)
+        let view = look_at - look_from;
+        let vup = if view.x == 0.0 && view.z == 0.0 { DVec3::X } else { DVec3::Y };
+        let (vfov_degrees, defocus_angle_degrees) = (vfov, lens);
+        let camera = Camera { look_from, look_at, vup, vfov_degrees, defocus_angle_degrees, ..Camera::BOOK };
+        let settings =
+            RenderSettings { width: 16, height: 12, max_depth: depth as u32, seed, ..Default::default() };
+        let recipe = Recipe {
+            name: "random".to_owned(),
+            scene: Arc::new(scene(balls, sky)),
+            camera,
+            settings,
+            keyframes: Vec::new(),
+            rules: Rules::FINISHED,
+            samples_per_pixel: 16,
+        };
+        moved(&recipe, factor, factor * offset)
     })
 }
 
@@ -185,11 +213,11 @@ impl Checker {
         let best = |is_fused: bool| available.iter().copied().rfind(|isa| isa.is_fused() == is_fused);
         let cpu = |isa: Isa| {
             let options = CpuOptions { isa: Some(isa), threads: Some(1), ..CpuOptions::default() };
-            Candidate::backend(isa.name(), BackendChoice::Cpu(options))
+            Candidate::new(isa.name(), BackendChoice::Cpu(options))
         };
         Checker {
             single: best(true).into_iter().chain(best(false)).map(cpu).collect(),
-            double: Candidate::backend("f64", BackendChoice::Reference { threads: Some(1) }),
+            double: Candidate::new("f64", BackendChoice::Reference { threads: Some(1) }),
         }
     }
 

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use weekender::backends::BackendChoice;
 use weekender::job::recipe::Recipe;
 use weekender::measure::Candidate;
-use weekender::measure::stress::{Case, Expected, Suite, cases};
+use weekender::measure::stress::{Case, Suite, cases};
 use weekender::render_cpu::{CpuOptions, Isa};
 use weekender::render_gpu::GpuOptions;
 
@@ -15,7 +15,7 @@ fn levels() -> Vec<Candidate> {
     let best = |is_fused: bool| available.iter().copied().rfind(|isa| isa.is_fused() == is_fused);
     let backend = |isa: Isa| {
         let options = CpuOptions { isa: Some(isa), threads: Some(1), ..CpuOptions::default() };
-        Candidate::backend(isa.name(), BackendChoice::Cpu(options))
+        Candidate::new(isa.name(), BackendChoice::Cpu(options))
     };
     best(true).into_iter().chain(best(false)).map(backend).collect()
 }
@@ -23,11 +23,11 @@ fn levels() -> Vec<Candidate> {
 fn gpu() -> Option<Candidate> {
     let gpu = crate::common::gpu::gpu(GpuOptions::default())?;
     let options = GpuOptions::of_adapter(Some(&gpu.adapter().name));
-    Some(Candidate::backend("gpu", BackendChoice::Gpu(options)))
+    Some(Candidate::new("gpu", BackendChoice::Gpu(options)))
 }
 
 fn suite(mut tracers: Vec<Candidate>) -> Suite {
-    tracers.push(Candidate::backend("f64", BackendChoice::Reference { threads: Some(1) }));
+    tracers.push(Candidate::new("f64", BackendChoice::Reference { threads: Some(1) }));
     Suite::new(tracers)
 }
 
@@ -35,7 +35,7 @@ fn suite(mut tracers: Vec<Candidate>) -> Suite {
 fn small(case: &Case) -> Case {
     let mut case = case.clone();
     case.recipe.samples_per_pixel = case.recipe.samples_per_pixel.min(8);
-    if let Expected::Same(other) = &mut case.expected {
+    if let Some(other) = &mut case.twin {
         other.samples_per_pixel = case.recipe.samples_per_pixel;
     }
     case

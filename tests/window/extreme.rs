@@ -19,8 +19,7 @@ fn extreme_scenes_say_what_to_watch_and_wipe_against_the_book() {
         until(&mut harness, &case.id, |window| {
             window.shown_document().case() == Some(case) && has_samples(1)(window)
         });
-        let watch = case.watch.unwrap();
-        assert!(harness.query_all_by_label_contains(watch.look_for).next().is_some(), "{}", case.id);
+        assert!(harness.query_all_by_label_contains(&case.claim.look_for).next().is_some(), "{}", case.id);
     }
     assert_eq!(harness.state().partner(), Some(Partner::Book));
     send(&mut harness, Command::Wipe);

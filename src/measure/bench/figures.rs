@@ -23,17 +23,6 @@ pub struct SceneFigures {
     pub spheres: usize,
     /// Rows in the table's order.
     pub rows: Vec<Row>,
-    pub denoising: Option<Denoising>,
-}
-
-/// The filter's time for a film of a scene.
-#[derive(Serialize)]
-pub struct Denoising {
-    pub samples_per_pixel: u64,
-    pub threads: usize,
-    pub seconds: Spread,
-    /// Estimated factor by which the squared error falls.
-    pub gain: f64,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -145,14 +134,14 @@ impl Row {
 
 impl SceneFigures {
     /// Relates the rows to the first one, the C program.
-    pub fn new(scene: &str, job: &RenderJob, mut rows: Vec<Row>, denoising: Option<Denoising>) -> Self {
+    pub fn new(scene: &str, job: &RenderJob, mut rows: Vec<Row>) -> Self {
         let speed = |row: &Row| row.paths_per_second.map(|spread| spread.median);
         let baseline = rows.first().and_then(speed);
         for row in &mut rows {
             row.ratio_to_baseline = speed(row).zip(baseline).map(|(own, baseline)| own / baseline);
         }
         let (scene, spheres) = (scene.to_owned(), job.scene().spheres.len());
-        SceneFigures { scene, settings: *job.settings(), spheres, rows, denoising }
+        SceneFigures { scene, settings: *job.settings(), spheres, rows }
     }
 }
 
@@ -164,7 +153,7 @@ mod tests {
 
     fn row(kind: Kind, runs: Vec<Run>) -> Row {
         let choice = BackendChoice::Reference { threads: Some(1) };
-        let mut row = Row::new(kind, &mut Candidate::backend("reference", choice));
+        let mut row = Row::new(kind, &mut Candidate::new("reference", choice));
         row.runs = runs;
         row.sum_up();
         row
@@ -176,11 +165,7 @@ mod tests {
             |paths| Run { seconds: 2.0, paths, rays: 7 * paths, busy_lanes: 0, offered_lanes: 0, rmse: None };
         let job = Recipe::builtin("metals").unwrap().job().unwrap();
         let ratios = |rows: Vec<Row>| -> Vec<Option<f64>> {
-            SceneFigures::new("metals", &job, rows, None)
-                .rows
-                .iter()
-                .map(|row| row.ratio_to_baseline)
-                .collect()
+            SceneFigures::new("metals", &job, rows).rows.iter().map(|row| row.ratio_to_baseline).collect()
         };
         let first = vec![
             row(Kind::Baseline, vec![run(20), run(10), run(90)]),

@@ -9,7 +9,6 @@ use super::table::counted;
 use super::{Candidate, write_json};
 use crate::backends::BackendChoice;
 use crate::cli::{BenchOptions, BenchScene};
-use crate::denoise;
 use crate::film::HALVES;
 use crate::job::render::RenderJob;
 use crate::render_cpu::{CpuOptions, Isa};
@@ -17,7 +16,7 @@ use crate::system::failure::Failure;
 use crate::system::interrupt::Interrupt;
 use crate::system::terminal;
 use anyhow::Result;
-use figures::{BenchFigures, Denoising, Kind, Row, Run, SceneFigures, Spread};
+use figures::{BenchFigures, Kind, Row, Run, SceneFigures};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -27,9 +26,6 @@ const LOAD_LIMIT: f64 = 0.5;
 
 /// How long to keep a GPU busy before each measured run.
 const WAKING: Duration = Duration::from_millis(300);
-
-/// Samples per pixel of the film that is denoised.
-const DENOISED_SAMPLES: u64 = 16;
 
 /// Shortest warm-up with a meaningful speed, seconds.
 const WARM_UP_SECONDS: f64 = 0.2;
@@ -80,27 +76,10 @@ impl Bench<'_> {
         let mut figures = BenchFigures::default();
         for scene in scenes.iter().take_while(|_| !self.is_cancelled()) {
             let rows = self.rows(scene, &mut candidates, &mut progress);
-            let denoising = self.denoising(&scene.job);
-            figures.scenes.push(SceneFigures::new(&scene.name, &scene.job, rows, denoising));
+            figures.scenes.push(SceneFigures::new(&scene.name, &scene.job, rows));
         }
         progress.display.clear();
         figures
-    }
-
-    /// How long the filter takes for a film of the scene; `None` if it cannot be rendered or denoised.
-    fn denoising(&self, job: &RenderJob) -> Option<Denoising> {
-        let (level, threads) = (self.best_level(), self.options.threads());
-        let traced =
-            cpu(level, level.native_lanes(), threads).trace(job, DENOISED_SAMPLES, self.cancel).ok()?;
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()?;
-        let run = |_| {
-            let begin = Instant::now();
-            let error = pool.install(|| denoise::of_film(&traced.film)).ok()?.error;
-            Some((begin.elapsed().as_secs_f64(), error.raw_mse / error.mse))
-        };
-        let runs = (0..self.options.runs).map(run).collect::<Option<Vec<_>>>()?;
-        let seconds = Spread::of(runs.iter().map(|(seconds, _)| *seconds))?;
-        Some(Denoising { samples_per_pixel: DENOISED_SAMPLES, threads, seconds, gain: runs[0].1 })
     }
 
     /// All candidates in the table's order.
@@ -186,11 +165,11 @@ fn cpu(isa: Isa, lanes: usize, threads: usize) -> Candidate {
     let options =
         CpuOptions { isa: Some(isa), lanes: Some(lanes), threads: Some(threads), ..CpuOptions::default() };
     let name = format!("{isa}, {}, {}", counted(lanes, "lane"), counted(threads, "thread"));
-    Candidate::backend(name, BackendChoice::Cpu(options))
+    Candidate::new(name, BackendChoice::Cpu(options))
 }
 
 fn gpu(choice: BackendChoice) -> Candidate {
-    let mut gpu = Candidate::backend("GPU", choice);
+    let mut gpu = Candidate::new("GPU", choice);
     if let Ok(renderer) = gpu.start() {
         gpu.name = renderer.info().device;
     }

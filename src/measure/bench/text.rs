@@ -2,7 +2,7 @@
 
 use super::super::machine::Machine;
 use super::super::table::{counted, or_dash, text_row};
-use super::figures::{BenchFigures, Denoising, Row, SceneFigures, Spread};
+use super::figures::{BenchFigures, Row, SceneFigures, Spread};
 use crate::job::render::RenderSettings;
 
 /// Longest name of a row.
@@ -23,24 +23,15 @@ pub fn text(machine: &Machine, figures: &BenchFigures) -> String {
 }
 
 fn scene(scene: &SceneFigures) -> String {
-    let SceneFigures { scene: name, settings, spheres, rows, denoising } = scene;
+    let SceneFigures { scene: name, settings, spheres, rows } = scene;
     let RenderSettings { width, height, max_depth, sampler, .. } = settings;
     let (sampler, spheres) = (sampler.name(), counted(*spheres, "sphere"));
     let runs = counted(rows.iter().map(|row| row.runs.len()).max().unwrap_or(0), "run");
     let heads = ["", "spp", "Mpaths/s", "min", "max", "x C89", "Mrays/s", "lanes %", "1/(MSE s)"];
     format!(
-        "{name}, {width}x{height}, depth {max_depth}, {sampler}, {spheres}; medians of {runs}\n{}{}{}",
+        "{name}, {width}x{height}, depth {max_depth}, {sampler}, {spheres}; medians of {runs}\n{}{}",
         text_row(&SCENE_WIDTHS, &heads),
-        rows.iter().map(scene_row).collect::<String>(),
-        denoising.as_ref().map(denoising_line).unwrap_or_default()
-    )
-}
-
-fn denoising_line(Denoising { samples_per_pixel, threads, seconds, gain }: &Denoising) -> String {
-    let [median, min, max] = [seconds.median, seconds.min, seconds.max].map(|seconds| 1e3 * seconds);
-    let threads = counted(*threads, "thread");
-    format!(
-        "denoising {samples_per_pixel} spp, {threads}: {median:.0} ms ({min:.0} to {max:.0}), 1/{gain:.1} of the MSE\n"
+        rows.iter().map(scene_row).collect::<String>()
     )
 }
 

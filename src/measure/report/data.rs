@@ -25,10 +25,6 @@ pub struct Settings {
     pub time_limit: f64,
     /// Maximum number of samples per pixel.
     pub max_samples: u64,
-    /// Samples per pixel of the references.
-    pub reference_samples: u64,
-    /// The backend that renders the references.
-    pub reference: String,
 }
 
 /// The picture that errors are measured against.
@@ -46,7 +42,7 @@ pub struct ReferenceUsed {
 }
 
 /// Identifies a line of the plot.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Curve {
     pub scene: String,
     /// The backend, as `weekender report --backends` names it.
@@ -75,8 +71,6 @@ pub struct Run {
     pub seed: u32,
     /// Full name of the backend.
     pub about: String,
-    /// Time to prepare the scene.
-    pub prepare_seconds: f64,
     /// Measured at powers of two of samples.
     pub points: Vec<Measured>,
 }
@@ -86,12 +80,8 @@ pub struct Run {
 pub struct Measured {
     /// Samples per pixel.
     pub samples: u64,
-    /// Seconds of tracing.
-    pub trace_seconds: f64,
-    /// Time of tracing and adding to the film.
+    /// Time of tracing, adding to the film, and denoising.
     pub wall_seconds: f64,
-    /// Time the device was busy, by its own clock; `None` if it has none.
-    pub device_seconds: Option<f64>,
     /// Mean squared error over pixels and channels, linear radiance, minus the reference's own; negative if the picture
     /// is better than the reference.
     pub mse: f64,

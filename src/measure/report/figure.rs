@@ -1,8 +1,8 @@
 //! The plot of error against time.
 
+use super::curves::{CurvePoint, CurveSummary, distinct};
 use super::data::Data;
-use super::summary::{CurvePoint, CurveSummary, distinct};
-use crate::numbers::chart::{Axis, Figure, LineChart, Look, Point, Series};
+use crate::numbers::chart::{Axis, Figure, LineChart, Point, Series};
 
 /// One chart per scene, with the times to `target` marked.
 pub fn figure(data: &Data, curves: &[CurveSummary], target: f64) -> Figure {
@@ -37,7 +37,7 @@ fn chart(scene: &str, curves: &[CurveSummary], target: f64) -> LineChart {
     let at = |time: f64| errors[1] * (times[0] / time).sqrt();
     let guide = |name: &str, ends: [(f64, f64); 2]| {
         let points = ends.map(|(x, y)| Point { x, y, spread: None }).to_vec();
-        Series { name: name.to_owned(), points, look: Look::Guide }
+        Series { name: name.to_owned(), points, is_guide: true }
     };
     let mut series = vec![guide("", [(times[0], at(times[0])), (end, at(end))])];
     if target > bottom && target < errors[1] {
@@ -65,6 +65,6 @@ fn measured(curve: &CurveSummary, bottom: f64) -> Series {
     Series {
         name: format!("{}, {}", curve.curve.backend, curve.curve.sampler),
         points: points.collect(),
-        look: Look::Measured,
+        is_guide: false,
     }
 }

@@ -1,13 +1,15 @@
 //! `weekender report`: error against time, for scenes, backends and samplers.
+//!
+//! The history that a render keeps has only estimates, so each picture is measured against a reference here.
 
+mod curves;
 mod data;
 mod figure;
 mod reference;
-mod summary;
 mod text;
 
+pub use curves::{CurvePoint, CurveSummary, curves};
 pub use data::{Curve, Data, Settings};
-pub use summary::{CurvePoint, CurveSummary, curves};
 
 use super::machine::Machine;
 use super::progress::Progress;
@@ -16,7 +18,7 @@ use crate::cli::ReportOptions;
 use crate::denoise;
 use crate::film::{Film, SOFTWARE};
 use crate::job::recipe::Recipe;
-use crate::job::render::{RenderJob, SamplerKind, Stats};
+use crate::job::render::{RenderJob, SamplerKind};
 use crate::numbers::chart;
 use crate::system::console;
 use crate::system::failure::Failure;
@@ -29,10 +31,6 @@ use reference::ReferencePicture;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
-use summary::Findings;
-
-/// Expected seconds for a scene's reference, for the progress bar.
-const EXPECTED_SECONDS: f64 = 40.0;
 
 /// Measures everything and writes the report to its directory. [`Failure::Input`] if nothing was rendered,
 /// [`Failure::Run`] otherwise.
@@ -68,10 +66,12 @@ impl<'a> Report<'a> {
         let (scenes, candidates) = (options.scenes()?, candidates(options)?);
         make_directory(&options.out)?;
         check_writable(&options.out.join("report.json"))?;
-        let data = Data { settings: settings(options), references: Vec::new(), runs: Vec::new() };
-        let per_scene: usize = candidates.iter().map(|c| samplers(c, options).len()).sum();
-        let per_scene = per_scene as f64 * options.time_limit + EXPECTED_SECONDS;
-        let progress = Progress::new(options.progress, scenes.len() as f64 * per_scene);
+        let ReportOptions { size, seeds, time_limit, max_samples, .. } = *options;
+        let settings = Settings { software: SOFTWARE.to_owned(), size, seeds, time_limit, max_samples };
+        let data = Data { settings, references: Vec::new(), runs: Vec::new() };
+        let curves: usize = candidates.iter().map(|candidate| samplers(candidate, options).len()).sum();
+        let pictures = scenes.len() * (1 + curves * seeds as usize);
+        let progress = Progress::new(options.progress, pictures as f64);
         let (machine, interrupt) = (Machine::look(), Interrupt::install()?);
         Ok(Report { options, scenes, machine, data, candidates, interrupt, progress })
     }
@@ -97,9 +97,9 @@ impl<'a> Report<'a> {
     fn reference(&mut self, recipe: &Recipe) -> Result<ReferencePicture> {
         self.progress.at(&format!("reference of {}", recipe.name));
         let job = reference::job_of(recipe, SamplerKind::Sobol, reference::SEED)?;
-        let mut exact = Candidate::backend("reference", self.options.reference()?);
+        let mut exact = Candidate::new("reference", self.options.reference()?);
         let film = exact.trace(&job, self.options.reference_samples(), self.interrupt.flag())?.film;
-        self.progress.finished(EXPECTED_SECONDS);
+        self.progress.finished(1.0);
         let about = exact.info().map_or_else(String::new, |info| format!("{} {}", info.name, info.device));
         ReferencePicture::of_film(&recipe.name, &about, &film)
     }
@@ -116,8 +116,7 @@ impl<'a> Report<'a> {
         let (scene, backend) = (recipe.name.clone(), candidate.name.clone());
         let curve = Curve { scene, backend, sampler: sampler.name().to_owned() };
         self.progress.at(&format!("{}, {}, {}, seed {seed}", curve.scene, curve.backend, curve.sampler));
-        let seconds = self.options.time_limit / f64::from(self.options.seeds);
-        let limits = (seconds, self.options.max_samples);
+        let limits = (self.options.time_limit / f64::from(self.options.seeds), self.options.max_samples);
         let job = reference::job_of(recipe, sampler, seed)?;
         let [raw, denoised] = measured(candidate, &job, reference, curve, limits, self.interrupt.flag())?;
         self.data.runs.push(raw);
@@ -125,16 +124,17 @@ impl<'a> Report<'a> {
         if !denoised.points.is_empty() && self.options.samplers.first() == Some(&sampler) {
             self.data.runs.push(denoised);
         }
-        self.progress.finished(seconds);
+        self.progress.finished(1.0);
         Ok(())
     }
 
     fn write(&self) -> Result<()> {
         let (out, targets) = (&self.options.out, self.options.targets());
-        let findings = Findings::of(&self.data, &targets);
-        write_json(&out.join("report.json"), &self.machine, &findings)?;
-        write_text(&out.join("report.md"), &text::markdown(&findings, &self.options.command))?;
-        let figure = figure::figure(&self.data, &findings.curves, targets[0]);
+        let curves = curves(&self.data, &targets);
+        write_json(&out.join("report.json"), &self.machine, &self.data)?;
+        let text = text::markdown(&self.data, &curves, &targets, &self.options.command);
+        write_text(&out.join("report.md"), &text)?;
+        let figure = figure::figure(&self.data, &curves, targets[0]);
         write_text(&out.join("error-vs-time.svg"), &chart::svg(&figure)?)?;
         print(&format!("wrote report.md, report.json and error-vs-time.svg to {}\n", out.display()))
     }
@@ -159,18 +159,6 @@ fn samplers(candidate: &Candidate, options: &ReportOptions) -> Vec<SamplerKind> 
     if candidate.is_baseline() { vec![SamplerKind::Independent] } else { options.samplers.clone() }
 }
 
-fn settings(options: &ReportOptions) -> Settings {
-    Settings {
-        software: SOFTWARE.to_owned(),
-        size: options.size,
-        seeds: options.seeds,
-        time_limit: options.time_limit,
-        max_samples: options.max_samples,
-        reference_samples: options.reference_samples(),
-        reference: options.reference_backend.clone(),
-    }
-}
-
 /// Renders 1, 2, 4 ... samples and measures each picture. Stops when the next doubling would exceed the limits, but
 /// renders at least two. Measures each picture denoised as well; the time of its filter then counts. Returns the figures
 /// raw and denoised. The limits are seconds of tracing and samples per pixel.
@@ -182,44 +170,30 @@ fn measured(
     (seconds, most_samples): (f64, u64),
     cancel: &AtomicBool,
 ) -> Result<[Run; 2]> {
-    let begin = Instant::now();
     let renderer = candidate.start()?;
     renderer.prepare(job, cancel)?;
-    let prepare_seconds = begin.elapsed().as_secs_f64();
     let info = renderer.info();
     let about = format!("{} {}, {} lanes, {} threads", info.name, info.device, info.lanes, info.threads);
-    let mut raw = Run { curve, seed: job.settings().seed, about, prepare_seconds, points: Vec::new() };
+    let mut raw = Run { curve, seed: job.settings().seed, about, points: Vec::new() };
     let mut denoised = Run { curve: raw.curve.denoised(), ..raw.clone() };
     // The first picture pays for caches, threads and memory, so trace it off the clock.
     candidate.trace(job, 1, cancel)?;
-    let device_begin = candidate.start()?.diagnostics().device_time;
     let mut film = candidate.new_film(job)?;
-    let (mut total, mut wall) = (Stats::default(), Duration::ZERO);
-    let mut samples = 1;
+    let (mut wall, mut samples) = (Duration::ZERO, 1);
     while samples <= most_samples.max(2) {
         let begin = Instant::now();
         let stats = candidate.add(job, film.sample_count()..samples, &mut film, cancel)?;
         // Starting the C program and reading its picture do not count as rendering.
         wall += if candidate.is_baseline() { stats.trace } else { begin.elapsed() };
-        total.add(&stats);
-        let device = candidate.start()?.diagnostics().device_time.zip(device_begin);
-        let point = |film: &Film, mse_estimate, filter: Duration| {
+        let rejected = film.rejected();
+        let point = |film: &Film, mse_estimate, wall: Duration| {
             let [mse, rel_mse] = reference.errors(film);
-            Measured {
-                samples,
-                trace_seconds: total.trace.as_secs_f64(),
-                wall_seconds: (wall + filter).as_secs_f64(),
-                device_seconds: device.map(|(now, begin)| now.saturating_sub(begin).as_secs_f64()),
-                mse,
-                rel_mse,
-                mse_estimate,
-                rejected: total.rejected,
-            }
+            Measured { samples, wall_seconds: wall.as_secs_f64(), mse, rel_mse, mse_estimate, rejected }
         };
-        raw.points.push(point(&film, film.error().map(|error| error.rmse.powi(2)), Duration::ZERO));
+        raw.points.push(point(&film, film.error().map(|error| error.rmse.powi(2)), wall));
         let begin = Instant::now();
         if let Ok(found) = denoise::of_film(&film) {
-            denoised.points.push(point(&found.film, Some(found.error.mse), begin.elapsed()));
+            denoised.points.push(point(&found.film, Some(found.error.mse), wall + begin.elapsed()));
         }
         // Assumes that twice the samples take twice as long.
         if samples >= 2 && 2.0 * wall.as_secs_f64() > seconds {
@@ -252,8 +226,6 @@ mod tests {
             seeds: 4,
             time_limit: 10.0,
             max_samples: 64,
-            reference_samples: 512,
-            reference: "cpu".to_owned(),
         };
         Data { settings, references: Vec::new(), runs: Vec::new() }
     }
@@ -273,9 +245,9 @@ mod tests {
         let go_on = AtomicBool::new(false);
         let recipe = small();
         let job = reference::job_of(&recipe, SamplerKind::Sobol, 3).unwrap();
-        let film_of = |samples| Candidate::backend("", cpu()).trace(&job, samples, &go_on).unwrap().film;
+        let film_of = |samples| Candidate::new("", cpu()).trace(&job, samples, &go_on).unwrap().film;
         let reference = ReferencePicture::of_film("metals", "", &film_of(64)).unwrap();
-        let mut candidate = Candidate::backend("cpu", cpu());
+        let mut candidate = Candidate::new("cpu", cpu());
         let mut steps = |limits, cancel: &AtomicBool| {
             measured(&mut candidate, &job, &reference, curve("cpu", "sobol"), limits, cancel)
         };
@@ -287,7 +259,7 @@ mod tests {
             let film = film_of(point.samples);
             assert_eq!([point.mse, point.rel_mse], reference.errors(&film));
             assert_eq!(point.mse_estimate, film.error().map(|error| error.rmse.powi(2)));
-            assert!(0.0 < point.trace_seconds && point.trace_seconds <= point.wall_seconds, "{point:?}");
+            assert!(point.wall_seconds > 0.0, "{point:?}");
         }
         assert_eq!(denoised.iter().map(|point| point.samples).collect::<Vec<_>>(), [2, 4]);
         assert!(

@@ -1,15 +1,15 @@
 //! `report.md`.
 
 use super::super::table::or_dash;
-use super::summary::{Calibration, CurveSummary, Findings, TOLERANCE, distinct};
+use super::curves::{CurveSummary, distinct};
+use super::data::Data;
 use crate::numbers::statistics::fit::Crossing;
 
 /// Backends to compare others with, if measured.
 const BASES: [&str; 2] = ["c89", "scalar"];
 
 /// The report as Markdown. `command` made the report.
-pub fn markdown(findings: &Findings<'_>, command: &str) -> String {
-    let Findings { data, curves, targets, calibration: calibrations } = findings;
+pub fn markdown(data: &Data, curves: &[CurveSummary], targets: &[f64], command: &str) -> String {
     let settings = &data.settings;
     let mut text = format!(
         "# Error against time\n\nHow the error of a picture falls with time, as measured by\n\n    {command}\n\n\
@@ -30,7 +30,7 @@ pub fn markdown(findings: &Findings<'_>, command: &str) -> String {
         }
         text += &overview(&of_scene, targets);
     }
-    text + &calibration(calibrations)
+    text
 }
 
 const HOW_TO_READ: &str = "\
@@ -38,23 +38,27 @@ const HOW_TO_READ: &str = "\
 radiance, where white is 1. At 0.05 a picture is grainy, at 0.01 nearly clean, and at 0.001 no screen shows the
 difference. *relMSE* gives more weight to errors in dark areas. The *slope* is the exponent of the seconds in the RMSE:
 -0.5 means that halving the error takes four times as long. *Efficiency* is 1/(RMSE^2 seconds): twice the efficiency
-gives the same picture in half the time. Efficiency and relMSE are of the last point. Times with ~ are extrapolated.
-Seconds are medians over the pictures and include adding to the film; errors are means. `report.json` has every picture
-at every number of samples.
+gives the same picture in half the time. *Estimate* is the RMSE that the pictures' halves predict without a reference,
+divided by the true one. Efficiency, relMSE and estimate are of the last point. Times with ~ are extrapolated. Seconds
+are medians over the pictures and include adding to the film; errors are means. `report.json` has every picture at every
+number of samples.
 ";
 
 /// One row per curve of a scene.
 fn overview(curves: &[&CurveSummary], targets: &[f64]) -> String {
     let bases: Vec<&str> =
         BASES.into_iter().filter(|base| curves.iter().any(|c| c.curve.backend == *base)).collect();
-    let mut heads = ["backend", "sampler", "slope", "efficiency", "relMSE"].map(str::to_owned).to_vec();
+    let mut heads =
+        ["backend", "sampler", "slope", "efficiency", "relMSE", "estimate"].map(str::to_owned).to_vec();
     heads.extend(targets.iter().map(|target| format!("to RMSE {target}")));
     heads.extend(bases.iter().map(|base| format!("times {base}")));
     let rows = curves.iter().map(|curve| {
         let slope = or_dash(curve.slope, |[slope, deviation]| format!("{slope:.2} ± {deviation:.2}"));
         let names = [&curve.curve.backend, &curve.curve.sampler].map(Clone::clone);
-        let rel_mse = or_dash(curve.points.last(), |point| number(point.rel_mse));
-        let figures = [slope, number(curve.efficiency), rel_mse];
+        let last = curve.points.last();
+        let rel_mse = or_dash(last, |point| number(point.rel_mse));
+        let estimate = or_dash(last.and_then(|point| point.estimate_ratio), |ratio| format!("{ratio:.3}"));
+        let figures = [slope, number(curve.efficiency), rel_mse, estimate];
         let mut row = [&names[..], &figures].concat();
         row.extend(curve.times.iter().map(|time| {
             or_dash(*time, |c| format!("{}{} s", if c.is_extrapolated { "~" } else { "" }, number(c.time)))
@@ -62,7 +66,7 @@ fn overview(curves: &[&CurveSummary], targets: &[f64]) -> String {
         row.extend(bases.iter().map(|base| ratio(curve, curves, base)));
         row
     });
-    let mut text = markdown_table(&heads, 2, rows);
+    let mut text = markdown_table(&heads, rows);
     if let (false, [target, ..]) = (bases.is_empty(), targets) {
         text += &format!(
             "\n*times X*: how many times as long X takes to reach an RMSE of {target} with its best sampler.\n"
@@ -82,39 +86,9 @@ fn ratio(curve: &CurveSummary, curves: &[&CurveSummary], base: &str) -> String {
     })
 }
 
-fn calibration(rows: &[Calibration]) -> String {
-    if rows.is_empty() {
-        return String::new();
-    }
-    let deviations = || rows.iter().map(|row| (row.ratio - 1.0).abs());
-    let heads =
-        ["scene", "backend", "sampler", "samples", "pictures", "predicted", "actual", "predicted / actual"];
-    let cells = rows.iter().map(|row| {
-        vec![
-            row.curve.scene.clone(),
-            row.curve.backend.clone(),
-            row.curve.sampler.clone(),
-            row.samples.to_string(),
-            row.seeds.to_string(),
-            number(row.predicted_rmse),
-            number(row.actual_rmse),
-            format!("{:.3} ± {:.3}", row.ratio, row.deviation),
-        ]
-    });
-    format!(
-        "\n## Is the error estimate accurate?\n\nThe RMSE that a picture's two halves predict without a reference, and the \
-         actual RMSE, over all pictures of a curve. {} of {} ratios are within 1 ± {TOLERANCE}; the largest deviation is \
-         {:.3}.\n\n{}",
-        deviations().filter(|deviation| *deviation <= TOLERANCE).count(),
-        rows.len(),
-        deviations().fold(0.0, f64::max),
-        markdown_table(&heads.map(str::to_owned), 3, cells)
-    )
-}
-
-/// A Markdown table. Columns after the first `texts` are right-aligned.
-fn markdown_table(heads: &[String], texts: usize, rows: impl IntoIterator<Item = Vec<String>>) -> String {
-    let rule = (0..heads.len()).map(|column| if column < texts { "---" } else { "---:" }.to_owned());
+/// A Markdown table. Columns after the first two are right-aligned.
+fn markdown_table(heads: &[String], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+    let rule = (0..heads.len()).map(|column| if column < 2 { "---" } else { "---:" }.to_owned());
     let rows = [heads.to_vec(), rule.collect()].into_iter().chain(rows);
     rows.map(|cells| format!("| {} |\n", cells.join(" | "))).collect()
 }
@@ -130,7 +104,7 @@ fn number(x: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::summary::CurvePoint;
+    use super::super::curves::CurvePoint;
     use super::super::tests::curve as key;
     use super::*;
 
@@ -141,6 +115,7 @@ mod tests {
             rmse,
             range: [0.01, 0.03],
             rel_mse: 0.04,
+            estimate_ratio: Some(0.9996),
         };
         CurveSummary {
             curve: key(backend, sampler),
@@ -163,15 +138,15 @@ mod tests {
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(
             lines[0],
-            "| backend | sampler | slope | efficiency | relMSE | to RMSE 0.01 | times c89 |"
+            "| backend | sampler | slope | efficiency | relMSE | estimate | to RMSE 0.01 | times c89 |"
         );
         assert_eq!(
             lines[2..6],
             [
-                "| c89 | independent | -0.50 ± 0.01 | 2.00 | 0.0400 | ~40.0 s | ~0.50 |",
-                "| c89 | sobol | -0.50 ± 0.01 | 2.00 | 0.0400 | 20.0 s | 1.00 |",
-                "| cpu | sobol | -0.50 ± 0.01 | 2.00 | 0.0400 | 5.00 s | 4.00 |",
-                "| cpu | independent | -0.50 ± 0.01 | 2.00 | 0.0400 | ~50.0 s | ~0.40 |",
+                "| c89 | independent | -0.50 ± 0.01 | 2.00 | 0.0400 | 1.000 | ~40.0 s | ~0.50 |",
+                "| c89 | sobol | -0.50 ± 0.01 | 2.00 | 0.0400 | 1.000 | 20.0 s | 1.00 |",
+                "| cpu | sobol | -0.50 ± 0.01 | 2.00 | 0.0400 | 1.000 | 5.00 s | 4.00 |",
+                "| cpu | independent | -0.50 ± 0.01 | 2.00 | 0.0400 | 1.000 | ~50.0 s | ~0.40 |",
             ]
         );
     }

@@ -5,7 +5,7 @@ use crate::job::recipe::{Recipe, file, plain_name};
 use crate::scene::{Camera, Material, Scene, Sphere};
 use anyhow::{Context, Result};
 use glam::DVec3;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 use toml::{Table, Value};
@@ -43,7 +43,7 @@ pub struct Family {
 }
 
 /// The result that a case must have. Radiance is linear.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Expected {
     /// Every sample has this radiance: a closed form without noise.
@@ -68,7 +68,7 @@ impl fmt::Display for Expected {
 }
 
 /// What a case says about its scene.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Claim {
     #[serde(default)]
     name: String,
@@ -116,7 +116,7 @@ impl Entry {
         // Only the materials that it uses.
         let spheres = self.file.get("spheres").map(Value::to_string).unwrap_or_default();
         if let Some(Value::Table(materials)) = self.file.get_mut("materials") {
-            materials.retain(|name, _| spheres.contains(name.as_str()));
+            materials.retain(|name, _| spheres.contains(name));
         }
         let mut recipe = file::parse(&self.file.to_string(), name)?;
         let scene = Arc::make_mut(&mut recipe.scene);

@@ -27,7 +27,8 @@ pub struct Difference {
 impl Difference {
     /// From the radiance of every sample: that of the worst channel.
     pub fn from_every(level: &Level, value: f64) -> Self {
-        let worst = level.mean.map(|mean| mean - value).into_iter().max_by(|a, b| a.abs().total_cmp(&b.abs()));
+        let worst =
+            level.mean.map(|mean| mean - value).into_iter().max_by(|a, b| a.abs().total_cmp(&b.abs()));
         Difference { bias: worst.unwrap_or_default(), ..Difference::default() }
     }
 
@@ -216,9 +217,12 @@ mod tests {
     #[test]
     fn worst_channel_counts() {
         let from = |mean| Difference::from_every(&Level { mean, ..Level::default() }, 0.5);
-        for (mean, off) in
-            [([0.75, 0.5, 0.625], 0.25), ([0.375, 0.0, 0.875], -0.5), ([-0.5, 0.5, 0.75], -1.0), ([0.5; 3], 0.0)]
-        {
+        for (mean, off) in [
+            ([0.75, 0.5, 0.625], 0.25),
+            ([0.375, 0.0, 0.875], -0.5),
+            ([-0.5, 0.5, 0.75], -1.0),
+            ([0.5; 3], 0.0),
+        ] {
             assert_eq!(from(mean).bias, off, "{mean:?}");
         }
         for mean in [[f64::NAN, 0.25, 0.75], [0.5, 0.25, f64::NAN]] {

@@ -52,13 +52,13 @@ pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
 fn tracers(levels: &[Isa], adapter: Option<&str>) -> Result<Vec<Candidate>> {
     let cpu = |isa: &Isa| {
         let options = CpuOptions { isa: Some(*isa), ..CpuOptions::default() };
-        Candidate::backend(isa.name(), BackendChoice::Cpu(options))
+        Candidate::new(isa.name(), BackendChoice::Cpu(options))
     };
     let mut tracers: Vec<Candidate> = levels.iter().map(cpu).collect();
     if let Some(gpu) = BackendChoice::gpu_if_present(adapter) {
-        tracers.push(Candidate::backend(adapter.unwrap_or("gpu"), gpu));
+        tracers.push(Candidate::new(adapter.unwrap_or("gpu"), gpu));
     }
-    tracers.push(Candidate::backend("f64", BackendChoice::Reference { threads: None }));
+    tracers.push(Candidate::new("f64", BackendChoice::Reference { threads: None }));
     // Report unavailable backends before anything runs.
     tracers.iter_mut().try_for_each(|tracer| tracer.start().map(drop))?;
     Ok(tracers)

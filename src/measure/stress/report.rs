@@ -2,9 +2,8 @@
 
 use super::super::table::{counted, or_dash, text_row};
 use super::super::{Candidate, Traced};
-use super::case::{Case, Expected};
+use super::case::{Case, Claim, Expected};
 use super::judge::{Difference, Level, Verdict, judge};
-use crate::film::Film;
 use crate::job::recipe::Recipe;
 use crate::stages::{Rules, SurfaceRule};
 use serde::Serialize;
@@ -61,11 +60,8 @@ impl Suite {
         });
         CaseReport {
             id: case.id.clone(),
-            family: case.family.title.clone(),
-            difficulty: case.difficulty().to_owned(),
-            expected: case.claim.expected.to_string(),
-            why: case.claim.why.clone(),
-            tolerance: case.claim.tolerance,
+            family: &case.family.title,
+            claim: case.claim.clone(),
             spheres: case.recipe.scene.spheres.len(),
             measured,
             book: book.into(),
@@ -102,8 +98,7 @@ impl Measured {
         traced: &Result<Traced, String>,
         other: &Result<Traced, String>,
     ) -> Self {
-        let measured =
-            Measured { backend: backend.to_owned(), form: form.to_owned(), ..Measured::default() };
+        let measured = Measured { backend: backend.to_owned(), form: form.to_owned(), ..Measured::default() };
         let Traced { film, seconds, warnings, .. } = match traced {
             Ok(traced) => traced,
             Err(reason) => return Measured { verdict: Verdict::None(reason.clone()), ..measured },
@@ -142,19 +137,13 @@ pub struct StressReport {
 }
 
 /// The results of a case. Radiance is linear.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct CaseReport {
     pub id: String,
     /// The family's title.
-    pub family: String,
-    /// Why it is hard.
-    pub difficulty: String,
-    /// The expected result, as in the table.
-    pub expected: String,
-    /// How the expected result is derived.
-    pub why: String,
-    /// Allowed difference of the mean.
-    pub tolerance: f64,
+    pub family: &'static str,
+    #[serde(flatten)]
+    pub claim: Claim,
     /// Number of spheres in the scene.
     pub spheres: usize,
     /// One entry per form and backend.
@@ -186,7 +175,7 @@ impl CaseReport {
         let book: Vec<String> = self.book.iter().map(|book| or_dash(book.offset(), brief)).collect();
         let cells = [
             self.id.clone(),
-            self.expected.clone(),
+            self.claim.expected.to_string(),
             or_dash(worst.and_then(|worst| worst.mean), |mean| format!("{mean:.6}")),
             or_dash(worst.and_then(Measured::offset), brief),
             or_dash(seconds, |seconds| format!("{seconds:.2} s")),
@@ -216,8 +205,9 @@ impl StressReport {
     pub fn summary(&self, chosen: usize) -> String {
         let count = self.cases.len();
         let right = self.cases.iter().filter(|case| case.is_right()).count();
-        let [single, double] =
-            [0, 1].map(|precision| self.cases.iter().filter(|case| case.book[precision].verdict.is_right()).count());
+        let [single, double] = [0, 1].map(|precision| {
+            self.cases.iter().filter(|case| case.book[precision].verdict.is_right()).count()
+        });
         let mut text = format!(
             "\n{right} of {} right on {} in {:.0} s; with the book's arithmetic, {single} in f32 and {double} in f64\n",
             counted(count, "case"),
@@ -237,7 +227,7 @@ mod tests {
     use super::super::{cases, with_far_spheres};
     use super::*;
     use crate::backends::BackendChoice;
-    use crate::film::fixed_point;
+    use crate::film::{Film, fixed_point};
     use crate::job::render::{BackendInfo, Control, Outcome, RenderError, RenderJob, Renderer, Stats};
     use crate::render_cpu::CpuOptions;
     use std::ops::Range;
@@ -256,8 +246,8 @@ mod tests {
     fn case_covers_all_backends_and_forms() {
         let options = CpuOptions { threads: Some(1), ..CpuOptions::default() };
         let mut suite = Suite::new(vec![
-            Candidate::backend("cpu", BackendChoice::Cpu(options)),
-            Candidate::backend("f64", BackendChoice::Reference { threads: Some(1) }),
+            Candidate::new("cpu", BackendChoice::Cpu(options)),
+            Candidate::new("f64", BackendChoice::Reference { threads: Some(1) }),
         ]);
         let mut run = |expected| suite.run(&small(Expected::Every(expected)), &AtomicBool::new(false));
         let report = run(0.5);

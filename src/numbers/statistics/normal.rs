@@ -37,7 +37,9 @@ mod tests {
 
     #[test]
     fn known_quantiles() {
-        for (chance, z) in [(0.05, 1.959_964), (0.01, 2.575_829), (6.334e-5, 4.0), (5.733e-7, 5.0), (1.0, 0.0)] {
+        for (chance, z) in
+            [(0.05, 1.959_964), (0.01, 2.575_829), (6.334e-5, 4.0), (5.733e-7, 5.0), (1.0, 0.0)]
+        {
             assert!(
                 (two_sided_quantile(chance) - z).abs() < 2e-5,
                 "{chance}: {}",

@@ -1,35 +1,12 @@
-//! Evaluates the measurements: curves, and the accuracy of error estimates.
+//! Evaluates the measurements.
 
 use super::data::{Curve, Data, Measured, Run};
 use crate::numbers::statistics::fit::{Crossing, Point, PowerLaw, time_to};
 use crate::numbers::statistics::median;
-use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Slopes and estimates are evaluated only from this many samples on: smaller pictures finish before all threads are
-/// busy, and no stop condition uses their estimates.
+/// Slopes are evaluated only from this many samples on: smaller pictures finish before all threads are busy.
 const FROM_SAMPLES: u64 = 16;
-
-/// An estimate is accurate if its ratio to the true error differs from 1 by at most this.
-pub const TOLERANCE: f64 = 0.05;
-
-/// Everything a report shows. The JSON leaves out what readers can derive.
-#[derive(Serialize)]
-pub struct Findings<'a> {
-    #[serde(flatten)]
-    pub data: &'a Data,
-    #[serde(skip)]
-    pub curves: Vec<CurveSummary>,
-    #[serde(skip)]
-    pub targets: &'a [f64],
-    pub calibration: Vec<Calibration>,
-}
-
-impl<'a> Findings<'a> {
-    pub fn of(data: &'a Data, targets: &'a [f64]) -> Self {
-        Findings { data, curves: curves(data, targets), targets, calibration: calibration(data) }
-    }
-}
 
 /// The pictures of a curve at one sample count.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +21,8 @@ pub struct CurvePoint {
     pub range: [f64; 2],
     /// Mean relative squared error.
     pub rel_mse: f64,
+    /// The RMSE that the pictures' halves predict without a reference, divided by the true one.
+    pub estimate_ratio: Option<f64>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -113,59 +92,9 @@ fn curve_point(samples: u64, points: &[&Measured]) -> CurvePoint {
         rmse: mse.sqrt(),
         range: [roots().fold(f64::INFINITY, f64::min), roots().fold(0.0, f64::max)],
         rel_mse: mean(|p| p.rel_mse),
+        estimate_ratio: Some((mean(|p| p.mse_estimate.unwrap_or(f64::NAN)) / mse).sqrt())
+            .filter(|ratio| ratio.is_finite()),
     }
-}
-
-/// Estimated and true errors of a curve's pictures at one sample count.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Calibration {
-    #[serde(flatten)]
-    pub curve: Curve,
-    /// Samples per pixel.
-    pub samples: u64,
-    pub seeds: usize,
-    /// Square root of the mean estimated squared error.
-    pub predicted_rmse: f64,
-    /// Square root of the mean squared error.
-    pub actual_rmse: f64,
-    /// Predicted over actual RMSE.
-    pub ratio: f64,
-    /// Standard deviation of the ratio, by the jackknife; NaN if one picture outweighs all others.
-    pub deviation: f64,
-}
-
-impl Calibration {
-    /// `pairs` holds estimated and true squared errors.
-    fn of(curve: &Curve, samples: u64, pairs: &[[f64; 2]]) -> Option<Self> {
-        let count = pairs.len() as f64;
-        let [predicted, actual] = [0, 1].map(|side| pairs.iter().map(|pair| pair[side]).sum::<f64>());
-        let left_out = || pairs.iter().map(|pair| ((predicted - pair[0]) / (actual - pair[1])).sqrt());
-        let mean = left_out().sum::<f64>() / count;
-        let squares: f64 = left_out().map(|ratio| (ratio - mean).powi(2)).sum();
-        let is_sound = pairs.len() > 1 && predicted > 0.0 && actual > 0.0;
-        is_sound.then(|| Calibration {
-            curve: curve.clone(),
-            samples,
-            seeds: pairs.len(),
-            predicted_rmse: (predicted / count).sqrt(),
-            actual_rmse: (actual / count).sqrt(),
-            ratio: (predicted / actual).sqrt(),
-            deviation: (squares * (count - 1.0) / count).sqrt(),
-        })
-    }
-}
-
-/// One entry per curve, except denoised ones, with error estimates and sample count from [`FROM_SAMPLES`] on.
-pub fn calibration(data: &Data) -> Vec<Calibration> {
-    let mut pairs: BTreeMap<(&Curve, u64), Vec<[f64; 2]>> = BTreeMap::new();
-    for run in data.runs.iter().filter(|run| !run.curve.is_denoised()) {
-        for Measured { samples, mse, mse_estimate, .. } in &run.points {
-            if let (Some(estimate), FROM_SAMPLES..) = (mse_estimate, *samples) {
-                pairs.entry((&run.curve, *samples)).or_default().push([*estimate, *mse]);
-            }
-        }
-    }
-    pairs.iter().filter_map(|((curve, samples), pairs)| Calibration::of(curve, *samples, pairs)).collect()
 }
 
 #[cfg(test)]
@@ -181,9 +110,7 @@ mod tests {
             let seconds = seconds * samples as f64;
             Measured {
                 samples,
-                trace_seconds: seconds,
                 wall_seconds: seconds,
-                device_seconds: None,
                 mse,
                 rel_mse: 2.0 * mse,
                 mse_estimate: (samples > 1).then_some(1.21 * mse),
@@ -194,7 +121,6 @@ mod tests {
             curve: curve(backend, sampler),
             seed,
             about: backend.to_owned(),
-            prepare_seconds: 0.0,
             points: (0..9).map(|power| point(seed, 1 << power)).collect(),
         };
         (0..4).map(run).collect()
@@ -210,6 +136,9 @@ mod tests {
         let last = found.points.last().unwrap();
         assert!((last.rmse - 0.2 / 16.0).abs() < 1e-12, "{last:?}");
         assert!(last.range[0] < last.rmse && last.rmse < last.range[1]);
+        assert!(
+            (last.estimate_ratio.unwrap() - 1.1).abs() < 1e-9 && found.points[0].estimate_ratio.is_none()
+        );
         assert!((found.slope.unwrap()[0] + 0.5).abs() < 1e-9);
         let [first, second] = [0, 1].map(|target| found.times[target].unwrap());
         assert!((first.time - 4.0).abs() < 1e-6 && first.is_extrapolated, "{first:?}");
@@ -235,22 +164,5 @@ mod tests {
         some[1].points.truncate(3);
         let samples: Vec<u64> = one(some, &[]).points.iter().map(|point| point.samples).collect();
         assert_eq!(samples, [1, 2, 4, 8, 16], "half of the pictures are not most of them");
-    }
-
-    #[test]
-    fn estimates_are_checked_from_16_samples_on() {
-        let found = calibration(&Data { runs: runs("cpu", "sobol", 0.04, 0.01), ..data() });
-        assert_eq!(found.iter().map(|row| row.samples).collect::<Vec<_>>(), [16, 32, 64, 128, 256]);
-        for row in &found {
-            assert_eq!(row.seeds, 4);
-            assert!((row.ratio - 1.1).abs() < 1e-9 && row.deviation < 1e-9, "{row:?}");
-            assert!((row.actual_rmse - (0.04 / row.samples as f64).sqrt()).abs() < 1e-12, "{row:?}");
-        }
-        let key = curve("cpu", "sobol");
-        // Leaving out either of two pairs gives ratios of 2 and 1/2, so their deviation is 3/4.
-        let two = Calibration::of(&key, 16, &[[4.0, 1.0], [1.0, 4.0]]).unwrap();
-        assert!((two.ratio - 1.0).abs() < 1e-12 && (two.deviation - 0.75).abs() < 1e-12, "{two:?}");
-        assert_eq!(Calibration::of(&key, 16, &[[1.0, 1.0]]), None);
-        assert_eq!(Calibration::of(&key, 16, &[[1.0, -2.0], [1.0, 1.0]]), None);
     }
 }
