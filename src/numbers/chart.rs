@@ -211,7 +211,6 @@ fn draw_chart(area: &Area, chart: &LineChart) -> Drawn {
         let points: Vec<(f64, f64)> = line(|point| Some(point.y)).collect();
         // The name of a law is at its start.
         let end = if series.is_guide { points.first() } else { points.last() };
-        let end = end.filter(|_| !series.name.is_empty());
         let end = end.map(|end| context.plotting_area().map_coordinate(end));
         let mut style = GUIDE.stroke_width(2);
         if series.is_guide {

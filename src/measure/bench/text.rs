@@ -37,10 +37,10 @@ fn scene(scene: &SceneFigures) -> String {
 
 fn scene_row(row: &Row) -> String {
     if let (Some(reason), true) = (&row.skipped, row.runs.is_empty()) {
-        return format!("{} skipped: {reason}\n", shortened(&row.name));
+        return format!("{:.NAME_WIDTH$} skipped: {reason}\n", row.name);
     }
     let cells = [
-        shortened(&row.name),
+        format!("{:.NAME_WIDTH$}", row.name),
         row.samples_per_pixel.to_string(),
         millions(row.paths_per_second, |spread| spread.median),
         millions(row.paths_per_second, |spread| spread.min),
@@ -65,12 +65,4 @@ fn short(number: f64) -> String {
         _ => 0,
     };
     format!("{number:.decimals$}")
-}
-
-fn shortened(name: &str) -> String {
-    if name.chars().count() <= NAME_WIDTH {
-        return name.to_owned();
-    }
-    let kept: String = name.chars().take(NAME_WIDTH - 3).collect();
-    format!("{kept}...")
 }

@@ -8,12 +8,8 @@ pub mod normal;
 pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let mut sorted: Vec<f64> = values.into_iter().collect();
     sorted.sort_by(f64::total_cmp);
-    let upper = sorted.len() / 2;
-    match sorted.len() {
-        0 => None,
-        count if count % 2 == 1 => Some(sorted[upper]),
-        _ => Some(0.5 * (sorted[upper - 1] + sorted[upper])),
-    }
+    let lower = sorted.len().checked_sub(1)? / 2;
+    Some(0.5 * (sorted[lower] + sorted[sorted.len() / 2]))
 }
 
 #[cfg(test)]
