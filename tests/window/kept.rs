@@ -4,7 +4,7 @@ use crate::harness::{
     SMALL, drag_from, has_samples, mean, middle, name_file, open, save, scroll, send, until,
 };
 use crate::questions::Ask as _;
-use eframe::egui::Key;
+use eframe::egui::{Key, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Window};
