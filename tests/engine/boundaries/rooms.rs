@@ -14,11 +14,11 @@ kernel: scene stages film job
 prepared: scene stages film job kernel
 render_cpu: system stages film job kernel prepared
 render_gpu: system stages film job kernel prepared
-backends: system scene stages film job kernel render_cpu render_gpu
+backends: scene stages film job kernel render_cpu render_gpu
 progressive: system numbers scene stages film denoise job backends
 batch: system scene stages film denoise job backends progressive
 cli: system scene stages film job render_cpu render_gpu backends progressive batch
-comparison: system numbers scene stages film job kernel render_cpu render_gpu backends batch cli
+comparison: system numbers scene stages film job kernel render_cpu batch cli
 measure: system numbers scene stages film denoise job kernel render_cpu render_gpu backends cli comparison
 app: excerpt system numbers scene stages film denoise job render_cpu render_gpu backends progressive batch cli comparison measure";
 
