@@ -2,7 +2,7 @@
 
 use super::values::{number, parse_size, parse_vector, range, whole};
 use crate::job::recipe::{Recipe, file};
-use crate::job::render::{DEPTH_LIMIT, RenderJob, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
+use crate::job::render::{DEPTH_LIMIT, RenderJob, SAMPLE_LIMIT, SamplerKind};
 use crate::job::saved::open;
 use crate::scene::VFOV_LIMITS_DEGREES;
 use crate::scene::builtin::BuiltinScene;
@@ -213,10 +213,4 @@ pub(super) fn scene_file(scene: Option<&OsStr>) -> Option<&Path> {
 /// The files that `--scene` names, which no output may replace.
 pub(super) fn inputs(scene: Option<&OsStr>) -> Vec<PathBuf> {
     scene_file(scene).map(file::inputs).unwrap_or_default()
-}
-
-/// Makes a picture `width` pixels wide, keeping its shape.
-pub(super) fn scale(settings: &mut RenderSettings, width: u32) {
-    let height = f64::from(settings.height) * f64::from(width) / f64::from(settings.width);
-    (settings.width, settings.height) = (width, (height.round() as u32).clamp(1, SIZE_LIMIT));
 }

@@ -1,6 +1,6 @@
 //! The spheres of the scene: editing them, and what becomes of a changed scene.
 
-use crate::harness::{control, drag_from, has_samples, send, until};
+use crate::harness::{control, has_samples, send, until};
 use crate::objects::{material, metal_sphere, middle_sphere, on_screen, opened, select, spheres};
 use crate::questions::Ask as _;
 use eframe::egui::{self, Key, Modifiers};
