@@ -15,13 +15,16 @@ mod window;
 pub use bench::{BenchOptions, BenchScene};
 pub use direct::{CheckOptions, CompareOptions, StressOptions};
 pub use paths::{check_outputs, check_paths};
+#[cfg(feature = "window")]
+pub use render::DrawWith;
 pub use report::ReportOptions;
 #[cfg(feature = "window")]
-pub use window::{DrawWith, WindowOptions};
+pub use window::WindowOptions;
 
 use crate::batch::info::InfoOptions;
 use crate::batch::merge::MergeOptions;
 use crate::batch::{BatchOptions, FramesOptions};
+use crate::film::checkpoint;
 use crate::job::recipe::Recipe;
 use crate::system::failure::{EXIT_CODES, Failure};
 use crate::system::journal;
@@ -29,6 +32,7 @@ use crate::system::shell;
 use anyhow::Result;
 use clap::error::{ContextKind, ContextValue};
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
+use render::RenderFlags;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
@@ -66,7 +70,7 @@ struct Raw {
     #[arg(long = "log", id = "log", value_name = "FILE.log", value_parser = values::file_ending(".log"), global = true)]
     _log: Option<PathBuf>,
     #[command(flatten)]
-    _render: render::RenderFlags,
+    _render: RenderFlags,
     #[command(subcommand)]
     _command: Option<Command>,
 }
@@ -127,11 +131,11 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
     }
     // The flags of a subcommand alone: reading `--device auto` asks the system for its GPUs.
     if matches.subcommand().is_none() {
-        let flags = render::RenderFlags::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
+        let flags = RenderFlags::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
         let command = recorded(&arguments);
         let request = match flags.animation.is_given() && !flags.list {
             true => animation::frames(flags, command).map(|options| Request::Frames(Box::new(options))),
-            false => render::request(flags, &matches, command),
+            false => request(flags, &matches, command),
         };
         return request.map_err(Failure::Input);
     }
@@ -149,6 +153,41 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
         Command::Stress(options) => Request::Stress(options),
         Command::Check(options) => Request::Check(options),
     })
+}
+
+/// Validates the flags without a subcommand. `command` is the command line.
+fn request(mut flags: RenderFlags, matches: &ArgMatches, command: String) -> Result<Request> {
+    let mut picture = None;
+    match flags.open.take() {
+        Some(path) if render::is_scene_file(&path) => flags.picture.scene = Some(path.into()),
+        Some(path) if checkpoint::read_head(&path).is_ok() => flags.files.resume = Some(path),
+        other => picture = other,
+    }
+    let files = &mut flags.files;
+    let is_film = |film: &PathBuf| film.metadata().is_ok_and(|found| found.len() > 0);
+    if files.go_on && files.checkpoint.as_ref().is_some_and(is_film) {
+        files.resume.clone_from(&files.checkpoint);
+    }
+    match (flags.batch, &flags.files.save_scene) {
+        _ if flags.list => Ok(Request::List),
+        (true, _) => Ok(Request::Batch(Box::new(render::batch(flags, command)?))),
+        (false, Some(path)) => {
+            render::check_paths(&flags, &[])?;
+            let saved = flags.files.resume.as_deref().or(picture.as_deref());
+            let (chosen, _) = sources::picture(&flags.picture, &flags.samples, saved)?;
+            Ok(Request::SaveScene(Box::new(chosen.recipe), path.clone()))
+        }
+        #[cfg(feature = "window")]
+        (false, None) => Ok(Request::Window(Box::new(window::options(flags, picture, matches)?))),
+        #[cfg(not(feature = "window"))]
+        (false, None) => {
+            let _ = matches;
+            anyhow::bail!(
+                "this build of Weekender has no window; add --batch to render to a file, for example: weekender --batch \
+                 --stage glass-schlick --out glass.png; or build it with its window: cargo build --release"
+            )
+        }
+    }
 }
 
 /// The arguments as clap reads them. A file in place of a command, as file managers pass it, opens in the window.

@@ -1,13 +1,9 @@
 //! Rendering, in the window or to files.
 
-use super::Request;
 use super::sources::{self, ChosenRecipe, PictureFlags, SampleFlags};
 use super::values::{file_ending, parse_duration, parse_noise_target, parse_seconds, range, whole};
-#[cfg(feature = "window")]
-use super::window;
 use crate::backends::BackendChoice;
 use crate::batch::{BatchOptions, Output};
-use crate::film::checkpoint;
 use crate::job::output::OutputFormat;
 use crate::job::recipe::{Recipe, plain_name};
 use crate::progressive::{NoiseOf, Plan, Stop};
@@ -15,7 +11,7 @@ use crate::scene::animation::FRAME_LIMIT;
 use crate::system::files::{STANDARD, ShownPath};
 use crate::system::terminal::ProgressChoice;
 use anyhow::{Result, bail, ensure};
-use clap::{ArgGroup, ArgMatches, Args};
+use clap::{ArgGroup, Args};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -30,7 +26,7 @@ pub(super) struct RenderFlags {
     pub list: bool,
     #[cfg(feature = "window")]
     #[command(flatten)]
-    pub window: window::WindowFlags,
+    pub window: WindowFlags,
     /// Open this film, picture or scene file in the window; FILE without a flag does the same. A picture of another program is checked
     #[arg(long, value_name = "FILE", conflicts_with_all = ["batch", "list", "scene", "stage", "resume", "AnimationFlags"])]
     pub open: Option<PathBuf>,
@@ -49,6 +45,33 @@ pub(super) struct RenderFlags {
     pub animation: AnimationFlags,
     #[command(flatten)]
     pub files: FileFlags,
+}
+
+/// How the window is drawn; independent of the tracer.
+#[cfg(feature = "window")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum DrawWith {
+    /// Whatever is faster on this machine
+    #[default]
+    Auto,
+    /// Vulkan, Metal or DX12
+    Wgpu,
+    /// OpenGL
+    Gl,
+}
+
+#[cfg(feature = "window")]
+#[derive(Debug, Args)]
+pub(super) struct WindowFlags {
+    /// How to draw the window; auto: wgpu, or gl without a hardware adapter
+    #[arg(long, value_enum, default_value = "auto", conflicts_with = "batch")]
+    pub draw_with: DrawWith,
+    /// Open the window with its default picture instead of the last one shown
+    #[arg(long, conflicts_with = "batch")]
+    pub fresh: bool,
+    /// Autosave interval of the window, 0.1s to 30d of tracing
+    #[arg(long, value_name = "DURATION", value_parser = parse_duration, default_value = "60s", hide = true)]
+    pub autosave_every: Duration,
 }
 
 #[derive(Debug, Args)]
@@ -100,11 +123,11 @@ pub(super) struct FileFlags {
     /// existing file is never replaced, unless the render continues its film (--continue, --resume)
     #[arg(long, value_name = "FILE.exr", value_parser = file_ending(".exr"), requires = "batch",
           conflicts_with = "AnimationFlags")]
-    checkpoint: Option<PathBuf>,
+    pub checkpoint: Option<PathBuf>,
     /// Continue the film of --checkpoint if it exists, so that one command starts a render and continues it; a damaged
     /// film is renamed to FILE.exr.damaged, and rendered again
     #[arg(long = "continue", requires = "checkpoint", conflicts_with = "resume")]
-    go_on: bool,
+    pub go_on: bool,
     /// Interval at which --checkpoint is written, the most that a power cut can cost: 0.1s to 30d, such as 30s, 5m or
     /// 1h
     #[arg(long, value_name = "DURATION", value_parser = parse_duration, default_value = "60s", requires = "checkpoint")]
@@ -114,53 +137,18 @@ pub(super) struct FileFlags {
     pub resume: Option<PathBuf>,
     /// Write the scene, with the changes of the other flags, as a scene file
     #[arg(long, value_name = "FILE.toml", conflicts_with = "AnimationFlags")]
-    save_scene: Option<PathBuf>,
+    pub save_scene: Option<PathBuf>,
     /// Write the final figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-", requires = "batch")]
     pub json: Option<PathBuf>,
 }
 
-/// Validates the flags without a subcommand. `command` is the command line.
-pub(super) fn request(mut flags: RenderFlags, matches: &ArgMatches, command: String) -> Result<Request> {
-    let mut picture = None;
-    match flags.open.take() {
-        Some(path) if is_scene_file(&path) => flags.picture.scene = Some(path.into()),
-        Some(path) if checkpoint::read_head(&path).is_ok() => flags.files.resume = Some(path),
-        other => picture = other,
-    }
-    let files = &mut flags.files;
-    let is_film = |film: &PathBuf| film.metadata().is_ok_and(|found| found.len() > 0);
-    if files.go_on && files.checkpoint.as_ref().is_some_and(is_film) {
-        files.resume.clone_from(&files.checkpoint);
-    }
-    match (flags.batch, &flags.files.save_scene) {
-        _ if flags.list => Ok(Request::List),
-        (true, _) => Ok(Request::Batch(Box::new(batch(flags, command)?))),
-        (false, Some(path)) => {
-            check_paths(&flags, &[])?;
-            let saved = flags.files.resume.as_deref().or(picture.as_deref());
-            let (chosen, _) = sources::picture(&flags.picture, &flags.samples, saved)?;
-            Ok(Request::SaveScene(Box::new(chosen.recipe), path.clone()))
-        }
-        #[cfg(feature = "window")]
-        (false, None) => Ok(Request::Window(Box::new(window::options(flags, picture, matches)?))),
-        #[cfg(not(feature = "window"))]
-        (false, None) => {
-            let _ = matches;
-            bail!(
-                "this build of Weekender has no window; add --batch to render to a file, for example: weekender --batch \
-                 --stage glass-schlick --out glass.png; or build it with its window: cargo build --release"
-            )
-        }
-    }
-}
-
 /// Whether a file is a scene rather than a picture, judged by its name.
-fn is_scene_file(path: &Path) -> bool {
+pub(super) fn is_scene_file(path: &Path) -> bool {
     path == Path::new(STANDARD) || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"))
 }
 
-fn batch(flags: RenderFlags, command: String) -> Result<BatchOptions> {
+pub(super) fn batch(flags: RenderFlags, command: String) -> Result<BatchOptions> {
     let RenderFlags { picture, samples, files, .. } = &flags;
     let (ChosenRecipe { recipe, stage }, job) = sources::picture(picture, samples, files.resume.as_deref())?;
     let is_part = samples.sample_range.is_some() && files.checkpoint.is_some();
@@ -213,7 +201,7 @@ fn outputs(files: &FileFlags, default: Option<&str>) -> Result<Vec<Output>> {
 }
 
 /// Refuses outputs that would replace each other or an input.
-fn check_paths(flags: &RenderFlags, outputs: &[Output]) -> Result<()> {
+pub(super) fn check_paths(flags: &RenderFlags, outputs: &[Output]) -> Result<()> {
     let files = &flags.files;
     let scene = sources::inputs(flags.picture.scene.as_deref());
     let others = [files.save_scene.as_deref(), files.json.as_deref()].into_iter().flatten();
@@ -244,7 +232,7 @@ mod tests {
 
     fn render(line: &str) -> BatchOptions {
         match parse(format!("weekender --batch {line}").split(' ').map(Into::into)).unwrap() {
-            Request::Batch(options) => *options,
+            super::super::Request::Batch(options) => *options,
             other => panic!("{other:?}"),
         }
     }

@@ -1,8 +1,7 @@
 //! The flags of the window.
 
-use super::render::{RenderFlags, plan};
+use super::render::{DrawWith, RenderFlags, plan};
 use super::sources::{self, ChosenRecipe};
-use super::values::parse_duration;
 use crate::backends::BackendChoice;
 use crate::job::output::{is_named_picture, read_description};
 use crate::job::recipe::Recipe;
@@ -10,21 +9,9 @@ use crate::job::saved;
 use crate::progressive::Stop;
 use crate::stages::Stage;
 use anyhow::{Result, ensure};
-use clap::{ArgMatches, Args};
+use clap::ArgMatches;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-
-/// How the window is drawn; independent of the tracer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, clap::ValueEnum)]
-pub enum DrawWith {
-    /// Whatever is faster on this machine
-    #[default]
-    Auto,
-    /// Vulkan, Metal or DX12
-    Wgpu,
-    /// OpenGL
-    Gl,
-}
 
 /// Options of the window.
 #[derive(Clone, Debug)]
@@ -59,19 +46,6 @@ pub struct WindowOptions {
     /// The directory for autosaves; `None` disables them.
     pub state_directory: Option<PathBuf>,
     pub draw_with: DrawWith,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct WindowFlags {
-    /// How to draw the window; auto: wgpu, or gl without a hardware adapter
-    #[arg(long, value_enum, default_value = "auto", conflicts_with = "batch")]
-    draw_with: DrawWith,
-    /// Open the window with its default picture instead of the last one shown
-    #[arg(long, conflicts_with = "batch")]
-    fresh: bool,
-    /// Autosave interval of the window, 0.1s to 30d of tracing
-    #[arg(long, value_name = "DURATION", value_parser = parse_duration, default_value = "60s", hide = true)]
-    autosave_every: Duration,
 }
 
 /// Whether a file is a picture of another program.

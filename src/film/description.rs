@@ -87,6 +87,11 @@ impl Description {
         self.entries.iter().map(|(key, value)| format!("{key}: {value}"))
     }
 
+    /// Removes an entry, if there is one.
+    pub fn remove(&mut self, key: &str) {
+        self.entries.retain(|(known, _)| known != key);
+    }
+
     /// Parses a line of [`Description::lines`]; other lines are ignored.
     pub fn set_line(&mut self, line: &str) {
         if let Some((key, value)) = line.split_once(':') {

@@ -80,8 +80,9 @@ impl FilmSum {
         if !self.backends.is_empty() {
             description.set(key::BACKEND, self.backends.join("; "));
         }
-        if let Some(seconds) = self.seconds {
-            description.set(key::SECONDS, seconds);
+        match self.seconds {
+            Some(seconds) => description.set(key::SECONDS, seconds),
+            None => description.remove(key::SECONDS),
         }
         description
     }

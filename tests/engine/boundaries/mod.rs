@@ -62,18 +62,11 @@ fn circles_are_found_through_re_exports_and_paths() {
     let tree = |back: &'static str| {
         let root = ("", "pub mod a;\npub mod b;\n");
         let b = ("b", "mod part;\npub use part::{Part as Piece,\n    Other};\n");
-        circle(&[
-            root,
-            ("a", "use crate::boundaries::b::{Piece, Other};\npub struct Own;\n"),
-            b,
-            ("b::part", back),
-        ])
+        circle(&[root, ("a", "use crate::b::{Piece, Other};\npub struct Own;\n"), b, ("b::part", back)])
     };
-    for back in [
-        "use crate::boundaries::a::Own;\n",
-        "fn f() -> crate::boundaries::a::Own {}\n",
-        "use crate::boundaries::{a};\nfn f() -> a::Own {}\n",
-    ] {
+    for back in
+        ["use crate::a::Own;\n", "fn f() -> crate::a::Own {}\n", "use crate::{a};\nfn f() -> a::Own {}\n"]
+    {
         assert_eq!(tree(back), ["a", "b::part"], "{back}");
     }
     for harmless in ["", "use std::a::Own;\n", "pub struct Own;\n"] {
@@ -95,7 +88,7 @@ fn rooms_use_only_the_rooms_below_them() {
         let (name, listed) = row.split_once(':').expect("a room and what it uses");
         let listed: BTreeSet<&str> = listed.split_whitespace().collect();
         let code = rooms.get(name).map_or("", String::as_str);
-        let uses = code.split("crate::boundaries::").skip(1).map(|path| {
+        let uses = code.split("crate::").skip(1).map(|path| {
             let end = path.find(|c: char| !c.is_ascii_alphanumeric() && c != '_');
             &path[..end.unwrap_or(path.len())]
         });
