@@ -228,11 +228,11 @@ pub(super) fn plan(flags: &RenderFlags, recipe: &Recipe) -> Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::parse;
+    use crate::cli::{Request, parse};
 
     fn render(line: &str) -> BatchOptions {
         match parse(format!("weekender --batch {line}").split(' ').map(Into::into)).unwrap() {
-            super::super::Request::Batch(options) => *options,
+            Request::Batch(options) => *options,
             other => panic!("{other:?}"),
         }
     }
