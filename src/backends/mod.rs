@@ -173,14 +173,15 @@ mod tests {
 
     #[test]
     fn each_fallback_is_tried_once() {
-        let low_priority = CpuOptions { low_priority: true, ..CpuOptions::default() };
         let mut failed = vec![BackendChoice::Gpu(GpuOptions::default())];
         while let Some(next) = BackendChoice::fallback(&failed) {
             failed.push(next);
         }
         let words: Vec<_> = failed.iter().map(BackendChoice::words).collect();
         assert_eq!(words, ["the GPU", "the CPU", "the CPU's scalar code", "the reference"]);
-        assert_eq!(failed[1], BackendChoice::Cpu(low_priority));
+        let low_priority = CpuOptions { low_priority: true, ..CpuOptions::default() };
+        let scalar = BackendChoice::Cpu(CpuOptions { lanes: Some(1), ..low_priority });
+        assert_eq!(BackendChoice::fallback(&[scalar]), Some(BackendChoice::Cpu(low_priority)));
     }
 
     fn adapter(is_software: bool, lacks: Option<&str>) -> AdapterInfo {

@@ -57,7 +57,12 @@ impl Picture {
         let denoised = described(key::DENOISED).or_else(|| (layer == Some(DENOISED_LAYER)).then(String::new));
         // A film's layers are pictures.
         if let Some(saved @ Saved { kind: Kind::Film(_), .. }) = saved.as_ref().filter(|_| layer.is_none()) {
-            return Picture::of_rendered(name, Some(&saved.recipe), saved.film()?.film.into());
+            match saved.film() {
+                Ok(read) => return Picture::of_rendered(name, Some(&saved.recipe), read.film.into()),
+                // Another program lost the sums, but the picture is there.
+                Err(OpenError::Film(CheckpointError::Resaved { .. })) => {}
+                Err(error) => return Err(error.into()),
+            }
         }
         let recipe = saved.map(|saved| saved.recipe);
         let read = read_picture(path, layer)?;

@@ -25,7 +25,8 @@ fn a_panic_leaves_a_report() {
         let (code, _, said) = outcome(&command.output().unwrap());
         assert!(code == Some(0) && said.contains("a report is in "), "{said}");
         let found = if is_found { place.as_path() } else { here.path() };
-        let report = fs::read_dir(found).unwrap().next().unwrap().unwrap().path();
+        let mut files = fs::read_dir(found).unwrap().map(|entry| entry.unwrap().path());
+        let report = files.find(|path| path.is_file()).unwrap();
         let report = fs::read_to_string(report).unwrap();
         assert!(report.contains("weekender of a test") && report.contains("outside of a render"), "{report}");
     }

@@ -42,7 +42,7 @@ fn bad_requests_fail_before_rendering() {
     let cases: [(&[&str], &[&str]); 6] = [
         (&[], &["--out"]),
         (&["--out", "file"], &["file", "choose another"]),
-        (&["--out", "o", "--scenes", "three-sphere"], &["three-sphere", "three-spheres"]),
+        (&["--out", "o", "--scenes", "three-sphere"], &["three-sphere", "--list"]),
         (&["--out", "o", "--scenes", "book,metals,book"], &["two scenes called book", "leave one out"]),
         (&["--out", "o", "--backends", "cpu,tpu"], &["tpu", "scalar", "c89"]),
         (&["--out", "o", "--backends", "cpu", "--adapter", "x"], &["--adapter", "gpu"]),
