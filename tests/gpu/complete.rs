@@ -177,7 +177,7 @@ fn cut_short(samples_per_dispatch: u64) -> Option<(GpuRenderer, RenderJob)> {
 
 #[test]
 fn samples_that_a_driver_leaves_out_are_traced_again() {
-    const SAMPLES: u64 = 1 << 14;
+    const SAMPLES: u64 = 1 << 17;
     let Some((mut short, job)) = cut_short(SAMPLES) else { return };
     let expected = rendered(&mut gpu(GpuOptions::default()).unwrap(), &job, SAMPLES);
     // Over several passes, whenever it is noticed.

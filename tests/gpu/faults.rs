@@ -107,7 +107,9 @@ fn the_cpu_completes_the_picture_of_a_broken_device() {
             let case = format!("{word} at {at:?}: {status:?}");
             assert_eq!(status.phase, Phase::Done(EndReason::Samples), "{case}");
             let said = status.messages.join("; ");
-            assert!(said.contains(word) && said.contains("the CPU continues"), "{case}");
+            assert!(said.contains("the CPU continues"), "{case}");
+            // Before the first pass, wgpu names what could not be made.
+            assert!(at == Call::Prepare || said.contains(word), "{case}");
             let by_gpu = status.contributions.iter().find(|part| part.backend.name == "gpu");
             let by_gpu = by_gpu.map_or(0, |part| part.samples_per_pixel);
             let mut expected = job().new_film();
@@ -120,17 +122,18 @@ fn the_cpu_completes_the_picture_of_a_broken_device() {
     }
 }
 
-/// Dispatches grow until one takes longer than the patience.
+/// On a software adapter, where a dispatch of this size takes longer than the patience.
 #[test]
 fn a_device_that_does_not_respond_is_given_up() {
+    const SAMPLES: u64 = 1 << 13;
     let options = GpuOptions {
-        dispatch_target: Duration::from_secs(1),
+        samples_per_dispatch: Some(SAMPLES),
         patience: Duration::from_millis(1),
         ..GpuOptions::default()
     };
-    let Some(mut gpu) = gpu(options) else { return };
+    let Some(mut gpu) = gpu(options).filter(|gpu| gpu.adapter().is_software) else { return };
     let mut film = job().new_film();
-    let error = gpu.accumulate(&job(), 0..1 << 24, &mut film, &go_on()).unwrap_err();
+    let error = gpu.accumulate(&job(), 0..SAMPLES, &mut film, &go_on()).unwrap_err();
     assert!(matches!(error, RenderError::Backend { backend: "gpu", .. }), "{error}");
     assert!(error.to_string().contains("has not responded"), "{error}");
     assert!(film == job().new_film());
