@@ -19,7 +19,7 @@ progressive: system numbers scene stages film denoise job backends
 batch: system scene stages film denoise job backends progressive
 cli: system scene stages film job render_cpu render_gpu backends progressive batch
 comparison: system numbers scene stages film job kernel render_cpu batch cli
-measure: system numbers scene stages film denoise job kernel render_cpu render_gpu backends cli comparison
+measure: system numbers scene stages film denoise job render_cpu backends cli comparison
 app: excerpt system numbers scene stages film denoise job render_cpu render_gpu backends progressive batch cli comparison measure";
 
 /// Crates that only some rooms may use.
