@@ -52,7 +52,7 @@ fn words(key: &str, value: &Value) -> Option<String> {
 }
 
 /// Labelled lines in aligned columns.
-pub fn aligned<'a>(lines: &[(&'a str, String)]) -> String {
+pub fn aligned(lines: &[(&str, String)]) -> String {
     let width = lines.iter().map(|(label, _)| label.len()).max().unwrap_or(0) + 1;
     lines.iter().fold(String::new(), |mut text, (label, content)| {
         // Writing to a string cannot fail.

@@ -366,27 +366,3 @@ mod tests {
         assert!(reason.starts_with("refused: look_from and look_at are both"), "{reason}");
     }
 }
-
-#[cfg(test)]
-mod temporary {
-    use super::*;
-    #[test]
-    #[ignore]
-    fn all_cases_table() {
-        use crate::backends::BackendChoice;
-        use crate::render_cpu::{CpuOptions, Isa};
-        let cpu = |isa| BackendChoice::Cpu(CpuOptions { isa: Some(isa), ..CpuOptions::default() });
-        let mut suite = Suite::new(vec![
-            Candidate::new("avx2", cpu(Isa::Avx2)),
-            Candidate::new("sse4.2", cpu(Isa::Sse42)),
-            Candidate::new("f64", BackendChoice::Reference { threads: None }),
-        ]);
-        let mut report = StressReport { backends: suite.names(), ..StressReport::default() };
-        for case in super::super::cases() {
-            let found = suite.run(case, &AtomicBool::new(false));
-            eprint!("{}", found.text());
-            report.cases.push(found);
-        }
-        eprint!("{}", report.summary(report.cases.len()));
-    }
-}
