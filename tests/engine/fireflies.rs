@@ -22,14 +22,8 @@ fn cage(ball: f64, seed: u32) -> RenderJob {
         look_at: DVec3::new(0.0, -0.6, 0.0),
         ..Camera::default()
     };
-    let settings = RenderSettings {
-        width: 48,
-        height: 27,
-        max_depth: 50,
-        sampler: SamplerKind::Independent,
-        seed,
-        ..RenderSettings::default()
-    };
+    let settings =
+        RenderSettings { width: 48, height: 27, max_depth: 50, sampler: SamplerKind::Independent, seed };
     RenderJob::new(scene, camera, settings, Rules::default()).unwrap()
 }
 

@@ -97,7 +97,7 @@ pub fn job_of(
     max_depth: u32,
     sampler: SamplerKind,
 ) -> RenderJob {
-    let settings = RenderSettings { width, height, max_depth, sampler, seed: 3, ..RenderSettings::default() };
+    let settings = RenderSettings { width, height, max_depth, sampler, seed: 3 };
     RenderJob::new(scene.clone(), camera, settings, Rules::default()).unwrap()
 }
 
