@@ -76,6 +76,7 @@ fn frames_default_to_one_turn() {
 }
 
 #[test]
+#[cfg(feature = "window")]
 fn backend_flags_choose_the_windows_backend() {
     let is_given = |flags: &str| match request(flags) {
         Ok(Request::Window(options)) => options.is_device_given,
@@ -88,6 +89,7 @@ fn backend_flags_choose_the_windows_backend() {
 }
 
 #[test]
+#[cfg(feature = "window")]
 fn a_file_alone_is_opened_in_the_window() {
     let directory = tempfile::tempdir().unwrap();
     let at = |name: &str| directory.path().join(name);
