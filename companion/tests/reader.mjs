@@ -10,7 +10,7 @@ const executablePath = process.env.PATH.split(delimiter).map((path) => join(path
 const flags = ["--no-sandbox", "--headless=new", "--enable-unsafe-webgpu", "--use-angle=swiftshader"];
 const vulkan = ["--enable-features=Vulkan", "--use-vulkan=swiftshader"];
 const browser = await chromium.launch({ executablePath, args: [...flags, ...vulkan] });
-setTimeout(() => process.exit(1), 540_000).unref();
+setTimeout(() => process.exit(1), 1_500_000).unref();
 const seen = { console: [], cut: [], still: [], links: [] };
 const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
 page.on("console", (message) => seen.console.push(message.text()));
@@ -147,7 +147,7 @@ const shown = (link, isAsLinked, samples) => link.evaluate(async (link, [isAsLin
     const { session, stage, told } = live, { film, isStale } = session ?? {};
     return film && !isStale && film.width === stage.width && told.textContent.startsWith(`${settings.samples} of`);
   };
-  for (let i = 0; i < 1200 && live.session && !isDone(); i++) await new Promise((passed) => setTimeout(passed, 50));
+  for (let i = 0; i < 6000 && live.session && !isDone(); i++) await new Promise((passed) => setTimeout(passed, 50));
   if (!isDone()) throw new Error(`${link.dataset.stage} was not rendered: ${live.said.textContent}`);
   const canvas = new OffscreenCanvas(480, Math.round((480 * live.stage.height) / live.stage.width)), context = canvas.getContext("2d");
   context.drawImage(live.canvas, 0, 0, canvas.width, canvas.height);
