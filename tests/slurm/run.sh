@@ -44,7 +44,7 @@ trap 'exit 130' INT
 trap 'exit 143' TERM
 trap 'exit 129' HUP
 
-# Different levels of the processor, of those that round alike, and different widths. One level is enough.
+# Different levels of the processor, of those that round alike. One level is enough.
 levels=()
 for isa in avx512 avx2 neon; do
     if "$program" --batch --size 8x8 --samples 1 --device cpu --isa "$isa" --out "$work/try.png" > /dev/null 2>&1; then
@@ -53,7 +53,6 @@ for isa in avx512 avx2 neon; do
 done
 [ "${#levels[@]}" -gt 0 ] || levels=("--isa=auto")
 slow="${levels[0]} --simd=off"
-levels+=("${levels[-1]} --simd=4")
 
 # The program of this cluster, whose nodes have different processors. Parts that are to be ended early have one lane when
 # they first start: that takes seconds, and the film must not show it.
@@ -76,14 +75,14 @@ export PATH=$work/bin:$PATH
 cluster_up "$work/cluster" 4
 said "$(sinfo --version), munge: one node with 4 slots is idle"
 
-# The documented lines, with a smaller picture and 8 parts of 2048 samples.
+# The documented lines, with a smaller picture and 8 parts of 1024 samples.
 cd "$work"
 docs=$here/../../docs/many-machines.md
 sed -n '/^```bash$/,/^```$/{//d;p}' "$docs" |
-    sed 's/--array=0-31/--array=0-7/; s/ID \* 128/ID * 2048/; s/first + 128/first + 2048/; s/1200x675/160x90/' > parts.sbatch
-[ "$(grep -cE '0-7|\* 2048|160x90|first \+ 2048' parts.sbatch)" = 3 ] || fail "the script has changed: $(cat parts.sbatch)"
-merge=$(sed -n "s/^sbatch .* --wrap '\(.*\)'$/\1/p" "$docs" | sed 's/4096/16384/')
-[[ "$merge" = weekender\ merge\ *16384* ]] || fail "the merge has changed: $merge"
+    sed 's/--array=0-31/--array=0-7/; s/ID \* 128/ID * 1024/; s/first + 128/first + 1024/; s/1200x675/160x90/' > parts.sbatch
+[ "$(grep -cE '0-7|\* 1024|160x90|first \+ 1024' parts.sbatch)" = 3 ] || fail "the script has changed: $(cat parts.sbatch)"
+merge=$(sed -n "s/^sbatch .* --wrap '\(.*\)'$/\1/p" "$docs" | sed 's/4096/8192/')
+[[ "$merge" = weekender\ merge\ *8192* ]] || fail "the merge has changed: $merge"
 
 # Submits the array and the merge. Sets the numbers of both.
 submitted() {
@@ -103,8 +102,8 @@ has_checkpoint() { [ -n "$(samples_of "$1")" ]; }
 # Fails if the last run rendered all of the part, or none.
 went_on() {
     local new
-    new=$(sed -nE 's/^samples +2048 per pixel, ([0-9]+) of them new.*/\1/p' "part-$1.log" | tail -n 1)
-    [[ "$new" -gt 0 && "$new" -lt 2048 ]] || fail "part $1 did not go on: $new of its samples are new"
+    new=$(sed -nE 's/^samples +1024 per pixel, ([0-9]+) of them new.*/\1/p' "part-$1.log" | tail -n 1)
+    [[ "$new" -gt 0 && "$new" -lt 1024 ]] || fail "part $1 did not go on: $new of its samples are new"
 }
 expect() { grep -qF -- "$2" "$1" || fail "$1 does not say: $2"; }
 
@@ -124,14 +123,14 @@ wait_for 30 "task 3 is cancelled" has_state "${array}_3" CANCELLED
 wait_for 30 "task 1 is queued again" was_queued_again "${array}_1"
 for part in "${ended[@]}"; do
     count=$(samples_of "$part")
-    [ "$count" -lt 2048 ] || [ "$part" -eq 1 ] || fail "part $part was whole before it could be ended"
+    [ "$count" -lt 1024 ] || [ "$part" -eq 1 ] || fail "part $part was whole before it could be ended"
 done
 code=$(field "${array}_2" ExitCode)
 [ "$code" = 137:0 ] || fail "task 2 was killed, and its exit code is $code"
 said "task 1 got SIGTERM and is queued again; task 2 got SIGKILL and failed; task 3 was cancelled"
 
 # Meanwhile the same picture in one piece.
-"$program" --batch --scene book --size 160x90 --samples 16384 --device cpu --out whole.exr > whole.log 2>&1 &
+"$program" --batch --scene book --size 160x90 --samples 8192 --device cpu --out whole.exr > whole.log 2>&1 &
 whole=$!
 wait_for 120 "the merge has ended" has_ended "$merge_job"
 wait "$whole" || fail "the single run failed"
@@ -139,7 +138,7 @@ wait "$whole" || fail "the single run failed"
 went_on 1
 [ "$(field "$merge_job" ExitCode)" = 1:0 ] || fail "the merge did not end with 1"
 for part in 2 3; do
-    gap=$((2048 * part + $(samples_of $part)))..$((2048 * part + 2048))
+    gap=$((1024 * part + $(samples_of $part)))..$((1024 * part + 1024))
     expect merge.log "weekender --batch --sample-range=$gap --checkpoint=part-$part.exr --continue"
 done
 [ "$(grep -c ' --continue$' merge.log)" = 2 ] || fail "more than parts 2 and 3 is missing"
@@ -151,7 +150,7 @@ for part in 2 3; do
     [ "$(field "${again}_$part" ExitCode)" = 0:0 ] || fail "task $part failed again"
     went_on "$part"
 done
-check=(weekender merge part-*.exr --samples 16384)
+check=(weekender merge part-*.exr --samples 8192)
 "${check[@]}" > check.log 2>&1 || fail "parts are missing: $(cat check.log)"
 said "sbatch --array=2,3 parts.sbatch: both continued from their checkpoints; nothing is missing"
 
@@ -161,7 +160,7 @@ printf '%b' "\\0$(printf '%o' $((byte ^ 1)))" | dd of=part-6.exr bs=1 seek=25000
 if "${check[@]}" > check.log 2>&1; then fail "the damage is not found"; fi
 expect check.log "part-6.exr is damaged"
 command=$(grep ' --continue$' check.log)
-[[ "$command" = *" --sample-range=12288..14336 --checkpoint=part-6.exr --continue" ]] || fail "the command for part 6 is: $command"
+[[ "$command" = *" --sample-range=6144..7168 --checkpoint=part-6.exr --continue" ]] || fail "the command for part 6 is: $command"
 sh -c "$command" > again.log 2>&1 || fail "the command that merge prints failed"
 [ -e part-6.exr.damaged ] || fail "the damaged film was not put aside"
 said "a byte of part 6 was flipped; merge names it, and its command renders it again"
