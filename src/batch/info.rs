@@ -69,8 +69,7 @@ fn figures(path: &Path) -> anyhow::Result<Value> {
         error = Some(match checkpoint::load(path) {
             Ok(read) => {
                 estimate = read.film.error();
-                let words = || format!("not estimated: {}", read.film.why_no_error());
-                estimate.map_or_else(words, |error| error.words())
+                read.film.error_words()
             }
             Err(CheckpointError::Memory { reason, .. }) => reason.to_string(),
             Err(error) => return Err(error.into()),

@@ -34,6 +34,7 @@ pub fn lines(figures: &Value, lines: &[Line]) -> Vec<(&'static str, String)> {
 fn words(key: &str, value: &Value) -> Option<String> {
     Some(match (value, value.as_f64()) {
         (Value::Null, _) => return None,
+        (Value::String(text), _) if key == "ended_by" => text.replace('_', " "),
         (Value::String(text), _) => printable(text).into_owned(),
         (Value::Array(list), _) if list.is_empty() => return None,
         (Value::Array(list), _) => {
@@ -69,7 +70,7 @@ pub(super) const PICTURE: [Line; 10] = [
     ("left out", &["{left_out}"]),
     (
         "samples",
-        &["{samples_per_pixel} per pixel, {added_samples_per_pixel} of them new, ended by {ended_by}"],
+        &["{samples_per_pixel} per pixel, {added_samples_per_pixel} of them new, end: {ended_by}"],
     ),
     (
         "time",
@@ -130,7 +131,7 @@ pub(super) fn figures(
         "paths_per_second": status.paths_per_second(),
         "rays_per_second": status.rays_per_second(),
         "lane_occupancy": status.lane_occupancy(),
-        "error": error.map(|error| error.words()),
+        "error": film.map(Film::error_words),
         "rmse_estimate": error.map(|error| error.rmse),
         "rmse_deviation": error.map(|error| error.rmse_deviation),
         "rel_mse_estimate": error.map(|error| error.rel_mse),

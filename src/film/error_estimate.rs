@@ -170,6 +170,12 @@ impl Film {
         self.halves.iter().flatten().all(|sum| sum.0 == [0; 3])
     }
 
+    /// The estimated error, or why there is none.
+    pub fn error_words(&self) -> String {
+        let none = || format!("not estimated: {}", self.why_no_error());
+        self.error().map_or_else(none, |error| error.words())
+    }
+
     /// Why [`Film::error`] returns `None`.
     pub fn why_no_error(&self) -> &'static str {
         if !self.has_both_halves() { "only one half has samples" } else { "no path has found any light" }
