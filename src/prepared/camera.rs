@@ -2,12 +2,14 @@
 
 use super::rounded;
 use crate::kernel::{CameraTable, Real};
-use crate::scene::Camera;
+use crate::job::render::RenderJob;
 use glam::DVec3;
 
 impl<R: Real> CameraTable<R> {
     /// Coordinates are relative to `origin`.
-    pub fn new(camera: &Camera, width: u32, height: u32, origin: DVec3) -> Self {
+    pub fn new(job: &RenderJob, origin: DVec3) -> Self {
+        let (camera, [width, height]) = (job.camera(), [job.settings().width, job.settings().height]);
+        let ([scale_x, scale_y], [right, down]) = (job.viewport().scale, job.viewport().shift);
         let basis = camera.basis();
         let half_height = (camera.vfov_degrees.to_radians() / 2.0).tan();
         let half_width = half_height * f64::from(width) / f64::from(height);
@@ -18,10 +20,10 @@ impl<R: Real> CameraTable<R> {
             u: rounded(basis.u),
             lens_radius: R::from_f64(camera.lens_radius()),
             v: rounded(basis.v),
-            scale_x: R::from_f64(2.0 * half_width / f64::from(width)),
+            scale_x: R::from_f64(2.0 * half_width / f64::from(width) * scale_x),
             w: rounded(basis.w),
-            scale_y: R::from_f64(-2.0 * half_height / f64::from(height)),
-            offset: [R::from_f64(-half_width), R::from_f64(half_height)],
+            scale_y: R::from_f64(-2.0 * half_height / f64::from(height) * scale_y),
+            offset: [half_width * (2.0 * right - scale_x), half_height * (scale_y - 2.0 * down)].map(R::from_f64),
             size: [width, height].map(|pixels| R::from_f64(f64::from(pixels))),
         }
     }

@@ -193,7 +193,7 @@ impl<R: Real> PreparedScene<R> {
             hierarchy_source,
             records,
             scene_index: listed,
-            camera: CameraTable::new(job.camera(), settings.width, settings.height, groups.origin),
+            camera: CameraTable::new(job, groups.origin),
             sky_middle: rounded((bottom + top) / 2.0),
             sky_slope: rounded((top - bottom) / 2.0),
             block_limit: block_limit(scene.sky.bottom.max(scene.sky.top).max_element()),
@@ -230,7 +230,7 @@ impl<R: Real> PreparedScene<R> {
             return false;
         }
         let settings = *job.settings();
-        self.camera = CameraTable::new(job.camera(), settings.width, settings.height, groups.origin);
+        self.camera = CameraTable::new(job, groups.origin);
         self.settings = settings;
         self.hierarchy_source = HierarchySource::Kept;
         self.set_view(job, groups);

@@ -14,6 +14,7 @@ use crate::stages::Stage;
 use eframe::egui::text::LayoutJob;
 use eframe::egui::{self, Align, FontSelection, Label, RichText, Ui};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{Builder, sleep};
 
@@ -57,6 +58,8 @@ pub struct Check {
     /// The number of the place that is shown enlarged.
     pub place: Option<usize>,
     answers: Answers<Checked>,
+    /// Ends the check that is under way.
+    stop: Arc<AtomicBool>,
 }
 
 impl Check {
@@ -66,7 +69,8 @@ impl Check {
         (self.path, self.chosen, self.has_news) = (Some(path.to_owned()), stage, true);
         let (answer, mut watched) = (self.answers.promise(context), Watched::new(path));
         self.trying = Arc::new(Mutex::new(Some("reading it".to_owned())));
-        let (trying, window, name) = (Arc::clone(&self.trying), context.clone(), self.name());
+        let (trying, window, name, stop) =
+            (Arc::clone(&self.trying), context.clone(), self.name(), Arc::clone(&self.stop));
         let say = move |what| {
             *trying.lock().unwrap_or_else(PoisonError::into_inner) = what;
             window.request_repaint();
@@ -76,7 +80,7 @@ impl Check {
                 while answer.is_wanted() {
                     let found = watched.judged(|mine| {
                         say(Some("the right picture".to_owned()));
-                        judge(mine, stage, |what| say(Some(what)))
+                        judge(mine, stage, &stop, |what| say(Some(what)))
                     });
                     if let Some(found) = found {
                         say(None);
@@ -161,6 +165,7 @@ impl Check {
 
     /// Closes the answer. One that is awaited is not shown.
     pub fn close(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
         *self = Check { has_resumed: self.has_resumed, ..Check::default() };
     }
 

@@ -1,13 +1,16 @@
 //! The answer of a check, from which the text and the window's view are made.
 
-use super::hypothesis::{Compared, Fit, Hypothesis, compare};
+use super::fit::Fit;
+use super::hypothesis::{Added, Hypothesis};
+use super::judge::with_added;
 use super::tracer::{Steps, Tracer};
 use super::written::Seen;
-use super::{Damage, Finding, Mine, Mistake};
+use super::{Damage, Finding, Mine};
 use crate::comparison::answer::Verdict;
 use crate::scene::{Scene, Sphere};
 use crate::stages::{Shading, Stage, book_url, heading};
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -84,9 +87,9 @@ impl Answer {
         }
     }
 
-    fn explain(&mut self, mistake: &Mistake) {
-        self.remedy = Some(capitalised(mistake.remedy));
-        self.section = Section::find(mistake.section);
+    fn explain(&mut self, cause: &Cause) {
+        self.remedy = Some(capitalised(&cause.remedy));
+        self.section = Section::find(cause.section);
     }
 
     /// A right picture in a damaged file counts as different, because other programs cannot read it.
@@ -99,9 +102,36 @@ impl Answer {
     }
 }
 
+/// What a hypothesis does otherwise than the book.
+struct Cause {
+    title: String,
+    remedy: String,
+    section: &'static str,
+}
+
+impl Hypothesis {
+    fn cause(&self) -> Option<Cause> {
+        let words: Vec<&str> = self.numbers.iter().map(|number| number.words.as_str()).collect();
+        if let Some(first) = self.numbers.first() {
+            let codes = self.numbers.iter().map(|number| format!("`{}`", number.code)).collect::<BTreeSet<_>>();
+            let codes: Vec<String> = codes.into_iter().collect();
+            let remedy = format!("look at {}", codes.join(" and "));
+            return Some(Cause { title: words.join("; "), remedy, section: first.section });
+        }
+        let row = self.named()?;
+        Some(Cause { title: row.title.to_owned(), remedy: row.remedy.to_owned(), section: row.section })
+    }
+
+    /// The remarks of what is right all the same.
+    fn harmless(&self) -> Vec<&'static str> {
+        self.rows.iter().filter(|row| row.is_right).map(|row| row.title).collect()
+    }
+}
+
 impl Finding {
     pub fn answer(&self, mine: &Mine) -> Answer {
         let mine = &Mine { ignored: self.ignored.clone(), ..mine.clone() };
+        let right = &self.right;
         let mut answer = Answer {
             kind: AnswerKind::Right,
             title: "It is right".to_owned(),
@@ -110,11 +140,7 @@ impl Finding {
             section: None,
             stage: Some(self.stage),
             evidence: self.evidence(mine),
-            // If most of it differs, no place is more telling than another.
-            places: match self.right.differing {
-                share if share > 0.0 && share < 0.5 => apart(&self.right.places),
-                _ => Vec::new(),
-            },
+            places: self.places(),
             damages: mine.damages.clone(),
         };
         if self.ignored.is_some() {
@@ -124,67 +150,94 @@ impl Finding {
                  glass, fuzz and the lens hardly show there"
                     .to_owned();
         }
-        if let Some(mistake) = self.named().filter(|_| self.is_other_right()) {
-            answer.title = "It is right for the book, though not the same as ours".to_owned();
-            answer.explanation = capitalised(mistake.title);
-            answer.explain(mistake);
-        } else if let Some(mistake) = self.named().filter(|_| self.is_sure) {
-            answer.kind = AnswerKind::Mistake;
-            answer.title = capitalised(mistake.title);
-            answer.explanation = match self.alike.as_slice() {
-                [] => "With this mistake built into ours, the two differ by noise only".to_owned(),
-                [other, ..] => {
+        let explains = self.found.as_ref().unwrap_or(right);
+        match explains.hypothesis.cause() {
+            Some(cause) if self.is_right() => {
+                answer.title = "It is right for the book, though not the same as ours".to_owned();
+                answer.explanation = capitalised(&right.hypothesis.harmless().join(", and "));
+                answer.explain(&cause);
+            }
+            Some(cause) if self.is_sure => {
+                answer.kind = AnswerKind::Mistake;
+                answer.title = capitalised(&cause.title);
+                answer.explanation = "With this in ours, the two differ by noise only".to_owned();
+                let others = self.alike.iter().filter_map(Hypothesis::cause).map(|other| other.title);
+                let others: Vec<String> = others.collect();
+                if !others.is_empty() {
                     answer.kind = AnswerKind::LikelyMistake;
-                    answer.title = format!("{}, or {}", answer.title, other.title);
-                    "Each of them produces this picture".to_owned()
+                    answer.title = format!("{}, or {}", answer.title, others.join(", or "));
+                    answer.explanation = "Each of them produces this picture".to_owned();
                 }
-            };
-            answer.explain(mistake);
-        } else if self.is_too_little() {
-            self.too_little(&mut answer);
-        } else if let Some(mistake) = self.named() {
-            answer.kind = AnswerKind::LikelyMistake;
-            answer.title = format!("A guess: {}", mistake.title);
-            answer.explanation =
-                "It is the closest of the known mistakes, but does not explain everything".to_owned();
-            answer.explain(mistake);
-        } else if !self.is_sure {
-            answer.kind = AnswerKind::Unknown;
-            answer.title = "Something differs, and none of the known mistakes explains it".to_owned();
-            answer.explanation = "It may be a picture of another section".to_owned();
-            let remedy = "Choose the section that your picture belongs to, and look where it differs";
-            answer.remedy = Some(remedy.to_owned());
-        } else if !answer.damages.is_empty() {
-            let damage = answer.damages.remove(0);
-            answer.kind = AnswerKind::Mistake;
-            answer.title = capitalised(&damage.title);
-            answer.explanation = "The picture itself is right: it differs from ours by noise only".to_owned();
-            answer.remedy = Some(capitalised(damage.remedy));
-            answer.section = Section::find("2.2");
+                answer.explain(&cause);
+            }
+            _ if self.is_too_little() => self.too_little(&mut answer),
+            Some(cause) if self.found.is_some() => {
+                answer.kind = AnswerKind::LikelyMistake;
+                answer.title = format!("A guess: {}", cause.title);
+                answer.explanation = "It explains most of what differs, but not all".to_owned();
+                answer.explain(&cause);
+            }
+            _ if !self.is_sure => {
+                answer.kind = AnswerKind::Unknown;
+                answer.title = "Something differs, and none of the known mistakes explains it".to_owned();
+                answer.explanation = format!("It was compared with section {}", self.stage.section);
+            }
+            _ if !answer.damages.is_empty() => {
+                let damage = answer.damages.remove(0);
+                answer.kind = AnswerKind::Mistake;
+                answer.title = capitalised(&damage.title);
+                answer.explanation = "The picture itself is right: it differs from ours by noise only".to_owned();
+                answer.remedy = Some(capitalised(damage.remedy));
+                answer.section = Section::find("2.2");
+            }
+            _ => {}
         }
         answer
+    }
+
+    /// Whether the reader's noise is too strong for a verdict, or something has changed the picture.
+    fn is_too_little(&self) -> bool {
+        let is_noisy = self.samples().is_some_and(|samples| samples < SAMPLES_LEAST)
+            && self.right.fit.excess < 10.0 * NEARLY_RIGHT;
+        !self.is_sure && (is_noisy || self.altered.is_some() && self.right.fit.excess < NEARLY_RIGHT)
     }
 
     /// The answer if the noise does not allow a verdict.
     fn too_little(&self, answer: &mut Answer) {
         answer.kind = AnswerKind::CannotCheck;
-        let (title, remedy) = match self.grain.and_then(|grain| grain.altered) {
-            Some(altered) => (
-                format!("This file did not come straight from a ray tracer: {altered}"),
+        let likely = format!("It looks like section {}", self.stage.section);
+        answer.explanation = match self.found.as_ref().and_then(|found| found.hypothesis.cause()) {
+            _ if self.right.fit.excess < NEARLY_RIGHT => format!("{likely}, and no fault shows"),
+            Some(cause) => format!("{likely}, perhaps with this mistake: {}", cause.title),
+            None => format!("{likely}, but with differences that may be noise"),
+        };
+        let (title, remedy) = match self.altered {
+            Some(_) => (
+                "It looks right, but its noise is not that of a ray tracer",
                 "Check the PPM or PNG that your program writes: JPEG, palettes, scaling and filters change it",
             ),
             None => (
-                "It is too noisy to judge".to_owned(),
+                "It is too noisy to judge",
                 "Render it with at least 10 samples per pixel; with 100, even small faults show",
             ),
         };
-        (answer.title, answer.remedy) = (title, Some(remedy.to_owned()));
-        let likely = format!("It looks like section {}", self.stage.section);
-        answer.explanation = match self.named() {
-            _ if self.right.misfit < NEARLY_RIGHT => format!("{likely}, and no fault shows"),
-            Some(mistake) => format!("{likely}, perhaps with this mistake: {}", mistake.title),
-            None => format!("{likely}, but with differences that may be noise"),
-        };
+        (answer.title, answer.remedy) = (title.to_owned(), Some(remedy.to_owned()));
+    }
+
+    /// Places that tell most: the ball whose number is another, or where the pictures differ.
+    fn places(&self) -> Vec<[u32; 2]> {
+        let numbers = self.found.iter().flat_map(|found| &found.hypothesis.numbers);
+        let scene = &self.right.hypothesis.recipe.scene;
+        if let Some(sphere) = numbers.filter_map(|number| number.what.sphere(scene)).next()
+            && let Some(place) = self.right.hypothesis.middle_of(&scene.spheres[sphere])
+        {
+            return vec![place];
+        }
+        // If most of it differs, no place is more telling than another.
+        match self.right.fit.differing {
+            share if share > 0.0 && share < 0.5 => apart(&self.right.fit.places),
+            _ => Vec::new(),
+        }
     }
 
     fn evidence(&self, mine: &Mine) -> Vec<String> {
@@ -192,49 +245,45 @@ impl Finding {
             percent if percent > 0.0 && percent < 1.0 => "less than 1 %".to_owned(),
             percent => format!("{percent:.0} %"),
         };
-        let mut evidence = Vec::new();
+        let (mut evidence, right) = (Vec::new(), &self.right);
+        let scene = &right.hypothesis.recipe.scene;
+        let spheres = right.hypothesis.spheres();
+        if let ([[column, row], ..], Some(_)) = (right.fit.places.as_slice(), self.not_right()) {
+            let names = right.fit.places.iter().map(|[x, y]| spheres[(y * mine.width + x) as usize]);
+            evidence.push(format!(
+                "It differs in {} of the blocks of 8 x 8 pixels, most around column {column}, row {row}: {}",
+                percent(right.fit.differing),
+                shares(names.map(|sphere| name_of(scene, sphere)))
+            ));
+        }
+        let found = self.found.iter();
+        evidence.extend(found.clone().filter_map(|found| found.hypothesis.note.as_deref()).map(capitalised));
+        for number in found.clone().flat_map(|found| &found.hypothesis.numbers) {
+            evidence.push(format!("The number is {:.3}, with a deviation of {:.3}", number.value, number.deviation));
+        }
+        for cause in self.alike.iter().filter_map(Hypothesis::cause) {
+            evidence.push(format!("Or {}: {}", cause.title, cause.remedy));
+        }
+        if self.found.is_some() && !right.hypothesis.rows.is_empty() {
+            evidence.push(format!("Not wrong: {}", right.hypothesis.harmless().join(", and ")));
+        }
+        if !self.is_sure && right.hypothesis.is_right() {
+            evidence.extend(self.brightness(mine));
+        }
+        if let Some(samples) = self.samples().filter(|_| self.is_sure || self.is_too_little()) {
+            evidence.push(format!("Its noise is that of about {samples:.0} samples per pixel"));
+        }
         if let Some(ignored) = &self.ignored {
             let compared = ignored.iter().filter(|is_ignored| !**is_ignored).count() as f64;
-            let spheres = Tracer::new(&self.right.hypothesis.recipe, Steps::OF_THE_BOOK, 1).spheres();
             let shown = spheres.iter().zip(ignored.iter()).filter(|(_, is_ignored)| !**is_ignored);
-            let scene = &self.right.hypothesis.recipe.scene;
             evidence.push(format!(
                 "{} of the pixels were compared: {}; the others depend on the placement of the small spheres",
                 percent(compared / ignored.len() as f64),
                 shares(shown.map(|(sphere, _)| name_of(scene, *sphere)))
             ));
         }
-        if let Some(note) = self.mistake.as_ref().and_then(|found| found.hypothesis.note.as_deref()) {
-            evidence.push(capitalised(note));
-        }
-        if let ([[column, row], ..], true) = (self.right.places.as_slice(), self.right.differing > 0.0) {
-            evidence.push(format!(
-                "They differ in {} of the blocks of 8 x 8 pixels, most around column {column}, row {row}",
-                percent(self.right.differing)
-            ));
-        }
-        match &self.mistake {
-            Some(_) if self.right.differing == 0.0 => {
-                evidence
-                    .push("The means of blocks hardly differ; the mistake shows pixel by pixel".to_owned());
-            }
-            Some(found) if found.differing < self.right.differing => evidence.push(format!(
-                "With the mistake built into ours, they differ in {}",
-                percent(found.differing)
-            )),
-            _ => {}
-        }
-        for alike in &self.alike {
-            let remedy = capitalised(alike.remedy);
-            evidence.push(format!("Another mistake gives the same picture: {}. {remedy}", alike.title));
-        }
-        if !self.is_sure {
-            evidence.extend(measured(&self.right, mine));
-        }
-        if let Some(grain) =
-            self.grain.filter(|grain| grain.altered.is_none() && (1.0..5000.0).contains(&grain.samples))
-        {
-            evidence.push(format!("Its noise matches about {:.0} samples per pixel", grain.samples));
+        if let Some(altered) = self.altered.filter(|_| !self.is_right()) {
+            evidence.push(format!("The file may have been changed since it was written: {altered}"));
         }
         let is_gradient = self.stage.setup.rules.shading == Shading::ImageGradient;
         if self.is_right() && mine.width == mine.height && !is_gradient {
@@ -243,10 +292,43 @@ impl Finding {
         }
         evidence
     }
+
+    fn not_right(&self) -> Option<&Finding> {
+        (!self.is_right()).then_some(self)
+    }
+
+    /// How bright the picture is, if that explains a part.
+    fn brightness(&self, mine: &Mine) -> Option<String> {
+        let seen = Seen::of(mine, &self.right.hypothesis.written, |_, _| 0.0);
+        let (rendered, note) = with_added(&seen, self.right.rendered.clone(), Added::Gain);
+        let fit = Fit::new(&seen, &self.right.hypothesis.written, &rendered);
+        note.filter(|_| fit.excess < 0.8 * self.right.fit.excess).map(|note| capitalised(&note))
+    }
 }
 
-/// Mean squared error of display values below which no fault can be seen.
-const NEARLY_RIGHT: f64 = 1.5e-4;
+/// Samples per pixel below which noise hides faults.
+const SAMPLES_LEAST: f64 = 8.0;
+
+/// Mean square of the blocks' means, in bytes, below which no fault can be seen.
+const NEARLY_RIGHT: f64 = 4.0;
+
+impl Hypothesis {
+    /// The sphere that each pixel shows; `None` for the sky.
+    fn spheres(&self) -> Vec<Option<&Sphere>> {
+        Tracer::new(&self.recipe, Steps::OF_THE_BOOK, &self.viewport, 1).spheres()
+    }
+
+    /// The middle of the pixels that show a sphere.
+    fn middle_of(&self, sphere: &Sphere) -> Option<[u32; 2]> {
+        let [width, _] = self.size();
+        let shown = self.spheres().into_iter().enumerate().filter(|(_, it)| it.is_some_and(|it| it.center == sphere.center));
+        let (mut sum, mut count) = ([0, 0], 0);
+        for (pixel, _) in shown {
+            (sum[0] += pixel as u32 % width, sum[1] += pixel as u32 / width, count += 1);
+        }
+        (count > 0).then(|| sum.map(|sum| sum / count))
+    }
+}
 
 /// The first places that are not next to each other.
 fn apart(places: &[[u32; 2]]) -> Vec<[u32; 2]> {
@@ -260,25 +342,6 @@ fn apart(places: &[[u32; 2]]) -> Vec<[u32; 2]> {
         }
     }
     chosen
-}
-
-/// Measurements of a picture that no mistake explains: brightness, and where it differs.
-fn measured(right: &Compared, mine: &Mine) -> Vec<String> {
-    let seen = Seen::of(mine, &right.hypothesis.written, |_, _| 0.0);
-    let mut measured = Vec::new();
-    let gain = Hypothesis { fit: Some(Fit::Gain), ..right.hypothesis.clone() };
-    let brighter = compare(&seen, gain, right.rendered.clone());
-    if brighter.misfit < 0.8 * right.misfit {
-        measured.extend(brighter.hypothesis.note);
-    }
-    let tracer = Tracer::new(&right.hypothesis.recipe, Steps::OF_THE_BOOK, 1);
-    let spheres = tracer.spheres();
-    if right.differing > 0.0 {
-        let sphere = |[x, y]: &[u32; 2]| spheres[(y * mine.width + x) as usize];
-        let names = right.places.iter().map(|place| name_of(&right.hypothesis.recipe.scene, sphere(place)));
-        measured.push(format!("blocks that differ show: {}", shares(names)));
-    }
-    measured.into_iter().map(|line| capitalised(&line)).collect()
 }
 
 /// The material of a sphere, or the sky.

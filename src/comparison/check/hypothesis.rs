@@ -1,21 +1,15 @@
-//! Hypotheses: the right picture and the picture that each mistake would give, rendered and compared with the reader's.
+//! Hypotheses: the right picture of a section, of an older edition, or with a mistake or another number; and how they are
+//! rendered.
 
+use super::numbers::Number;
 use super::tracer::{Steps, Tracer};
-use super::written::{Seen, Written, reduced};
+use super::written::{Written, reduced};
 use crate::job::recipe::Recipe;
-use crate::job::render::{RenderSettings, Renderer, SamplerKind};
-use crate::numbers::statistics::blocks::{Block, BlockTest, Differences, Noise};
+use crate::job::render::{RenderSettings, Renderer, SamplerKind, Viewport};
 use crate::render_cpu::{CpuOptions, CpuRenderer};
-use anyhow::Result;
-use std::ops::Range;
-use std::sync::atomic::AtomicBool;
-
-/// Deviations by which a right picture's sum of squares may exceed noise. Noise alone stays below 4; the rest allows
-/// for correlated random numbers and noise that is far from normal.
-const EXCESS_LIMIT: f64 = 10.0;
-
-/// Factor by which a block of a right picture may exceed the limit for normal noise.
-const LARGEST_FACTOR: f64 = 1.6;
+use crate::stages::Stage;
+use anyhow::{Result, bail};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// A common mistake in programs that follow the book, or another way to be right.
 #[derive(Debug)]
@@ -29,21 +23,19 @@ pub struct Mistake {
     pub applies: fn(&Recipe) -> bool,
     /// Whether it is another way to be right.
     pub is_right: bool,
-    /// Each makes one variant of the mistake out of the right picture.
+    /// Each makes one variant of the mistake out of another picture.
     pub changes: &'static [fn(&mut Hypothesis)],
 }
 
 impl Mistake {
-    /// One hypothesis per variant, without those that change nothing in this recipe.
-    pub fn pictures(&'static self, recipe: &Recipe) -> Vec<Hypothesis> {
-        let right = Hypothesis::right(recipe);
+    /// One hypothesis per variant, without those that change nothing.
+    pub fn pictures(&'static self, base: &Hypothesis) -> Vec<Hypothesis> {
         let picture = |change: &fn(&mut Hypothesis)| {
-            let mut picture = Hypothesis { mistake: Some(self), ..right.clone() };
+            let mut picture = base.clone();
             change(&mut picture);
-            let is_changed = picture.written != right.written
-                || picture.fit.is_some()
-                || !picture.is_right_before_writing(recipe);
-            is_changed.then_some(picture)
+            picture.rows.push(self);
+            (picture.written != base.written || picture.added.is_some() || !picture.is_traced_as(base))
+                .then_some(picture)
         };
         self.changes.iter().filter_map(picture).collect()
     }
@@ -52,100 +44,38 @@ impl Mistake {
 /// A candidate for the reader's picture: how its linear values are made, and how they become bytes.
 #[derive(Clone, Debug)]
 pub struct Hypothesis {
-    /// The mistake; `None` for the right picture.
-    pub mistake: Option<&'static Mistake>,
+    pub stage: &'static Stage,
+    /// What is done otherwise than in the book.
+    pub rows: Vec<&'static Mistake>,
+    /// Numbers of scene and camera that are others than in the book, in the order in which they were found.
+    pub numbers: Vec<Number>,
     /// An extra remark for the reader.
     pub note: Option<String>,
     pub recipe: Recipe,
+    pub viewport: Viewport,
     /// The steps of the plain tracer; if `None`, the program's own tracer renders the recipe.
     pub steps: Option<Steps>,
-    /// A parameter of the mistake, fitted to the reader's picture.
-    pub fit: Option<Fit>,
-    /// Whether only pixels at edges show it.
+    /// Tells pictures of different steps apart.
+    traced: usize,
+    /// What is added to the picture, as often as fits the reader's.
+    pub added: Option<Added>,
+    /// Whether only single pixels show it.
     pub is_fine: bool,
     pub written: Written,
 }
 
-/// A picture that is added to the right one, times the factor that fits best.
+/// A picture that is added to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Fit {
-    /// The right picture itself: a factor of brightness.
+pub enum Added {
+    /// The picture itself: a factor of brightness.
     Gain,
-    /// The right picture, one pixel to the right, as if each pixel began with the mean of the one before.
+    /// The same, one pixel to the right, as if each pixel began with the mean of the one before.
     Carry,
 }
 
 impl Hypothesis {
-    pub fn right(recipe: &Recipe) -> Hypothesis {
-        Hypothesis {
-            mistake: None,
-            note: None,
-            recipe: recipe.clone(),
-            steps: None,
-            fit: None,
-            is_fine: false,
-            written: Written::right(recipe),
-        }
-    }
-
-    /// Switches to the plain tracer and returns its steps.
-    pub fn plain(&mut self) -> &mut Steps {
-        self.steps.get_or_insert(Steps::OF_THE_BOOK)
-    }
-
-    /// Whether the linear picture is the right one of `recipe`, so that only its bytes may be wrong.
-    pub fn is_right_before_writing(&self, recipe: &Recipe) -> bool {
-        self.steps.is_none() && self.recipe == *recipe
-    }
-
-    pub fn size(&self) -> [u32; 2] {
-        [self.recipe.settings.width, self.recipe.settings.height]
-    }
-}
-
-/// A rendered picture: linear RGB, row by row from the top, as two halves with independent noise.
-#[derive(Clone, Debug)]
-pub struct Rendered {
-    pub halves: [Vec<[f64; 3]>; 2],
-    /// Per pixel.
-    pub samples: u64,
-}
-
-impl Rendered {
-    pub fn mean(&self) -> Vec<[f64; 3]> {
-        let [a, b] = &self.halves;
-        a.iter().zip(b).map(|(a, b)| [0, 1, 2].map(|channel| 0.5 * (a[channel] + b[channel]))).collect()
-    }
-
-    pub fn map(&self, change: impl Fn(&[[f64; 3]]) -> Vec<[f64; 3]>) -> Rendered {
-        Rendered { halves: self.halves.each_ref().map(|half| change(half)), samples: self.samples }
-    }
-
-    /// The mean of each square of `factor` x `factor` pixels.
-    pub fn reduced(&self, width: usize, factor: usize) -> Rendered {
-        self.map(|half| reduced(half, width, factor))
-    }
-
-    /// This picture plus the difference of two others, which share random numbers so that most noise cancels.
-    pub fn changed(&self, from: &Rendered, to: &Rendered) -> Rendered {
-        let half = |half: usize| {
-            let pixels = self.halves[half].iter().zip(&from.halves[half]).zip(&to.halves[half]);
-            pixels.map(|((own, from), to)| [0, 1, 2].map(|c| own[c] + to[c] - from[c])).collect()
-        };
-        Rendered { halves: [half(0), half(1)], samples: self.samples }
-    }
-}
-
-pub struct Studio {
-    recipe: Recipe,
-    fast: CpuRenderer,
-}
-
-/// The size of the book's pictures: 400 x 225.
-const PIXELS: u64 = 90_000;
-
-impl Studio {
-    pub fn new(recipe: Recipe, [width, height]: [u32; 2]) -> Result<Studio> {
+    /// The right picture of a stage at this size.
+    pub fn right(stage: &'static Stage, recipe: Recipe, [width, height]: [u32; 2]) -> Hypothesis {
         let settings = RenderSettings {
             sampler: SamplerKind::Independent,
             // The reader's picture may be one of ours with the default seed.
@@ -154,23 +84,135 @@ impl Studio {
             height: height.max(1),
             ..recipe.settings
         };
-        let recipe = Recipe { settings, ..recipe };
-        Ok(Studio { recipe, fast: CpuRenderer::new(CpuOptions::default())? })
+        Hypothesis {
+            stage,
+            rows: Vec::new(),
+            numbers: Vec::new(),
+            note: None,
+            written: Written::right(&recipe),
+            recipe: Recipe { settings, ..recipe },
+            viewport: Viewport::WHOLE,
+            steps: None,
+            traced: 0,
+            added: None,
+            is_fine: false,
+        }
     }
 
-    pub fn recipe(&self) -> &Recipe {
-        &self.recipe
+    /// Switches to the plain tracer and returns its steps, to change one.
+    pub fn plain(&mut self) -> &mut Steps {
+        static LAST: AtomicUsize = AtomicUsize::new(0);
+        self.traced = 1 + LAST.fetch_add(1, Ordering::Relaxed);
+        self.steps.get_or_insert(Steps::OF_THE_BOOK)
     }
 
-    /// Renders a hypothesis: linear RGB in the layout of the file.
-    pub fn render(&mut self, hypothesis: &Hypothesis, samples: u64) -> Result<Vec<[f64; 3]>> {
-        let linear = self.halves(hypothesis, 1, samples, None)?.mean();
-        Ok(hypothesis.written.laid_out(&linear, hypothesis.size()))
+    /// The same without changed steps, for the program's own tracer.
+    pub fn fast(&self) -> Hypothesis {
+        Hypothesis { steps: None, ..self.clone() }
     }
 
-    /// Renders a hypothesis, smaller by a factor. Pictures larger than [`PIXELS`] get the same number of paths, and the
-    /// plain tracer gets fewer; it skips the pixels that `mask` excludes.
-    pub fn halves(
+    /// Whether it has the same linear picture.
+    pub fn is_traced_as(&self, other: &Hypothesis) -> bool {
+        self.traced == other.traced && self.recipe == other.recipe && self.viewport == other.viewport
+    }
+
+    /// Whether nothing in it is wrong.
+    pub fn is_right(&self) -> bool {
+        self.numbers.is_empty() && self.rows.iter().all(|row| row.is_right)
+    }
+
+    /// The first row that is wrong, or else the first one.
+    pub fn named(&self) -> Option<&'static Mistake> {
+        self.rows.iter().find(|row| !row.is_right).or_else(|| self.rows.first()).copied()
+    }
+
+    pub fn size(&self) -> [u32; 2] {
+        [self.recipe.settings.width, self.recipe.settings.height]
+    }
+
+    /// Whether every sample of a pixel is the same.
+    pub fn is_exact(&self) -> bool {
+        !self.recipe.rules.antialiasing && self.recipe.samples_per_pixel == 1
+    }
+}
+
+/// A rendered picture: linear RGB, row by row from the top, as two halves with independent noise.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    pub halves: [Vec<[f64; 3]>; 2],
+    /// Of one sample.
+    pub variance: Vec<[f64; 3]>,
+    /// Of the mean of both halves.
+    pub error: Vec<[f64; 3]>,
+}
+
+impl Rendered {
+    pub fn mean(&self) -> Vec<[f64; 3]> {
+        let [a, b] = &self.halves;
+        a.iter().zip(b).map(|(a, b)| [0, 1, 2].map(|channel| 0.5 * (a[channel] + b[channel]))).collect()
+    }
+
+    fn new(halves: [Vec<[f64; 3]>; 2], variance: &[[f64; 3]], samples: u64, width: usize) -> Rendered {
+        let variance = smoothed(variance, width);
+        let error = variance.iter().map(|pixel| pixel.map(|x| x / samples as f64)).collect();
+        Rendered { halves, variance, error }
+    }
+
+    fn map(&self, change: impl Fn(&[[f64; 3]], &dyn Fn(&Rendered) -> &[[f64; 3]], f64) -> Vec<[f64; 3]>) -> Rendered {
+        Rendered {
+            halves: [change(&self.halves[0], &|it| &it.halves[0], 1.0), change(&self.halves[1], &|it| &it.halves[1], 1.0)],
+            variance: change(&self.variance, &|it| &it.variance, 2.0),
+            error: change(&self.error, &|it| &it.error, 2.0),
+        }
+    }
+
+    /// The mean of each square of `factor` x `factor` pixels.
+    pub fn reduced(&self, width: usize, factor: usize) -> Rendered {
+        let mut small = self.map(|pixels, _, _| reduced(pixels, width, factor));
+        small.error.iter_mut().for_each(|pixel| *pixel = pixel.map(|x| x / (factor * factor) as f64));
+        small
+    }
+
+    /// This picture, and `other` where that has values.
+    pub fn under(&self, other: &Rendered) -> Rendered {
+        self.map(|own, of, _| {
+            let pixels = own.iter().zip(of(other));
+            pixels.map(|(own, other)| if other[0].is_nan() { *own } else { *other }).collect()
+        })
+    }
+
+    /// This picture plus `times` that of `from` each pixel, which is the pixel itself or another one.
+    pub fn plus(&self, times: f64, from: impl Fn(usize) -> usize) -> Rendered {
+        self.map(|pixels, _, power| {
+            let plus = |at: usize, c: usize| match from(at) {
+                from if from == at => (1.0 + times).powf(power) * pixels[at][c],
+                from => pixels[at][c] + times.abs().powf(power).copysign(times) * pixels[from][c],
+            };
+            (0..pixels.len()).map(|at| [0, 1, 2].map(|c| plus(at, c))).collect()
+        })
+    }
+}
+
+/// Renders hypotheses until it is told to stop.
+pub struct Studio<'a> {
+    fast: CpuRenderer,
+    stop: &'a AtomicBool,
+}
+
+/// The size of the book's pictures: 400 x 225.
+const PIXELS: u64 = 90_000;
+
+impl<'a> Studio<'a> {
+    pub fn new(stop: &'a AtomicBool) -> Result<Self> {
+        Ok(Studio { fast: CpuRenderer::new(CpuOptions::default())?, stop })
+    }
+
+    /// Renders a hypothesis, smaller by a factor, within the pixels of `mask`. Pictures larger than [`PIXELS`] get the same
+    /// number of paths.
+    ///
+    /// # Errors
+    /// If it was told to stop.
+    pub fn render(
         &mut self,
         hypothesis: &Hypothesis,
         factor: u32,
@@ -180,282 +222,95 @@ impl Studio {
         let [width, height] = hypothesis.size().map(|side| (side / factor).max(1));
         let mut recipe = hypothesis.recipe.clone();
         (recipe.settings.width, recipe.settings.height) = (width, height);
-        let is_exact = !recipe.rules.antialiasing && recipe.samples_per_pixel == 1;
-        let limit = samples * PIXELS / (u64::from(width) * u64::from(height));
-        let mut samples = if is_exact { 1 } else { limit.clamp(2, samples.max(2)) };
-        if hypothesis.steps.is_some() {
-            samples = 2 * (samples / 16).clamp(1, 8);
-        }
-        let mut half = |half: u32| match hypothesis.steps {
-            Some(steps) => Ok(Tracer::new(&recipe, steps, factor).means((samples / 2) as u32, half, mask)),
-            None => {
-                recipe.settings.seed = hypothesis.recipe.settings.seed.wrapping_add(half);
-                means(&mut self.fast, &recipe, samples.div_ceil(2))
+        let limit = samples * PIXELS / (u64::from(width) * u64::from(height)).max(PIXELS);
+        let samples = if hypothesis.is_exact() { 1 } else { limit.max(2).next_multiple_of(2) };
+        let rendered = match hypothesis.steps {
+            Some(steps) => {
+                let tracer = Tracer::new(&recipe, steps, &hypothesis.viewport, factor);
+                self.plain(&tracer, samples as u32, mask)
             }
+            None => self.fast(&recipe, hypothesis.viewport, samples)?,
         };
-        let first = half(0)?;
-        let second = if is_exact { first.clone() } else { half(1)? };
-        Ok(Rendered { halves: [first, second], samples })
-    }
-}
-
-fn means(fast: &mut CpuRenderer, recipe: &Recipe, samples: u64) -> Result<Vec<[f64; 3]>> {
-    let job = recipe.job()?;
-    let mut film = job.new_film();
-    fast.accumulate(&job, 0..samples, &mut film, &AtomicBool::new(false))?;
-    Ok(film.means().into_iter().map(|pixel| pixel.map(f64::from)).collect())
-}
-
-/// The reader's picture compared with a hypothesis.
-#[derive(Clone, Debug)]
-pub struct Compared {
-    pub hypothesis: Hypothesis,
-    /// Mean squared error beyond noise over blocks, in display values.
-    pub misfit: f64,
-    /// Whether the blocks differ only by noise.
-    pub is_noise: bool,
-    /// Share of the blocks that differ by more than noise.
-    pub differing: f64,
-    /// The middle of each block that differs by more than noise, the worst first: column and row.
-    pub places: Vec<[u32; 2]>,
-    /// The picture of the hypothesis, with what was fitted, and what it predicts in the values that `Seen` has.
-    pub rendered: Rendered,
-    pub expected: Vec<[f64; 3]>,
-}
-
-/// The hypothesis with what was fitted, and the mean squared error of its picture, in display values.
-pub fn rough(seen: &Seen, mut hypothesis: Hypothesis, rendered: Rendered) -> (Hypothesis, Rendered, f64) {
-    let rendered = fitted(seen, &mut hypothesis, rendered);
-    let expected = hypothesis.written.predicted(seen, &rendered.mean());
-    let (mut sum, mut count, mut known) = (0.0, 1e-9, 0.0);
-    let halves = rendered.halves.each_ref().map(|half| hypothesis.written.predicted(seen, half));
-    for (index, (seen, expected)) in
-        seen.values.as_flattened().iter().zip(expected.as_flattened()).enumerate()
-    {
-        // The render's own noise does not count as an error.
-        let [a, b] = halves.each_ref().map(|half| half[index / 3][index % 3]);
-        let noise = 0.25 * (a - b).powi(2);
-        // Converted to display values at the reader's brightness: at ours, noise would affect its own weight.
-        let square = ((seen - expected).powi(2) - noise) / (4.0 * seen.max(0.02));
-        known += f64::from(u8::from(seen.is_finite()));
-        if square.is_finite() {
-            sum += square;
-            count += 1.0;
+        if self.stop.load(Ordering::Relaxed) {
+            bail!("the check was stopped");
         }
+        Ok(rendered)
     }
-    let is_known = 4.0 * count > known;
-    (hypothesis, rendered, if is_known { sum / count } else { f64::INFINITY })
-}
 
-/// The blocks of a picture of this size, without means.
-pub fn blocks_of(width: u32, pixels: usize) -> Vec<Block> {
-    let (values, noise) = (vec![[0.0; 3]; pixels], Noise::Spread);
-    BlockTest::of(&Differences { width, values: &values, noise, steps: None, tolerance: 0.0, rare: 0.0 })
-        .blocks
-}
-
-/// Compares what is seen of the reader's picture with a hypothesis and its rendered picture.
-pub fn compare(seen: &Seen, mut hypothesis: Hypothesis, rendered: Rendered) -> Compared {
-    let width = seen.size[0] as usize;
-    let rendered = fitted(seen, &mut hypothesis, rendered);
-    let expected = hypothesis.written.predicted(seen, &rendered.mean());
-    let values: Vec<[f64; 3]> = seen
-        .values
-        .iter()
-        .zip(&expected)
-        .map(|(seen, expected)| [0, 1, 2].map(|channel| seen[channel] - expected[channel]))
-        .collect();
-    let test = BlockTest::of(&Differences {
-        width: seen.size[0],
-        values: &values,
-        noise: Noise::Spread,
-        steps: Some(&seen.half_steps),
-        tolerance: seen.tolerance,
-        rare: 0.0,
-    });
-    let limit = LARGEST_FACTOR * test.largest_limit;
-    let finite = |values: &[[f64; 3]]| values.as_flattened().iter().filter(|value| value.is_finite()).count();
-    let is_known = 4 * finite(&values) > finite(&seen.values) && test.counts.iter().sum::<usize>() > 0;
-    let is_noise = is_known && test.largest_excess() <= EXCESS_LIMIT && test.largest <= limit;
-    let middle = |range: &Range<u32>| u32::midpoint(range.start, range.end);
-    let beyond = test.blocks.iter().filter(|block| block.largest() > limit).count();
-    let places = test.worst(beyond.max(1)).into_iter().map(|block| [middle(&block.x), middle(&block.y)]);
-    Compared {
-        misfit: misfit(&test, &values, &expected, width),
-        is_noise,
-        differing: beyond as f64 / test.blocks.len().max(1) as f64,
-        places: places.collect(),
-        hypothesis,
-        rendered,
-        expected,
+    fn plain(&self, tracer: &Tracer, samples: u32, mask: Option<&[bool]>) -> Rendered {
+        let half = samples.div_ceil(2);
+        let [first, second] = [0, samples - half].map(|from| tracer.moments(from..from + half, mask, self.stop));
+        let mean = |half: &[[[f64; 3]; 2]]| half.iter().map(|[mean, _]| *mean).collect();
+        let variance = |at: usize| {
+            [0, 1, 2].map(|c| {
+                let between = (first[at][0][c] - second[at][0][c]).powi(2) * f64::from(half) / 2.0;
+                let within = first[at][1][c] + second[at][1][c];
+                // The deviation between the halves has one degree of freedom.
+                (between + f64::from(half - 1) * within) / f64::from(2 * half - 1)
+            })
+        };
+        let variance: Vec<[f64; 3]> = (0..first.len()).map(variance).collect();
+        Rendered::new([mean(&first), mean(&second)], &variance, u64::from(samples), tracer.width())
     }
-}
 
-/// A fitted factor below this is not a mistake.
-const LEAST_FIT: f64 = 0.009;
-
-/// The rendered picture with what the hypothesis adds to it.
-fn fitted(seen: &Seen, hypothesis: &mut Hypothesis, rendered: Rendered) -> Rendered {
-    let Some(fit) = hypothesis.fit else { return rendered };
-    let from = |index: usize| match fit {
-        Fit::Gain => index,
-        Fit::Carry => index.saturating_sub(1),
-    };
-    let right = rendered.mean();
-    let (mut product, mut square) = (0.0, 1e-9);
-    for (index, (seen, expected)) in seen.values.iter().zip(&right).enumerate() {
-        for channel in 0..3 {
-            let (direction, value) = (right[from(index)][channel], seen[channel]);
-            // A value at the top of its range is only a lower bound.
-            if value.is_finite() && value < 0.98 {
-                let weight = 1.0 / (0.01 + expected[channel]);
-                product += weight * direction * (value - expected[channel]);
-                square += weight * direction * direction;
+    /// The picture from films of few samples, whose scatter is its noise.
+    fn fast(&mut self, recipe: &Recipe, viewport: Viewport, samples: u64) -> Result<Rendered> {
+        const FILMS: u64 = 8;
+        let job = recipe.job()?.through(viewport);
+        let each = (samples / FILMS).max(samples.min(2));
+        let (mut sums, mut squares): ([Vec<[f64; 3]>; 2], Vec<[f64; 3]>) = Default::default();
+        let mut parts = 0.0;
+        for number in 0..(samples / each).max(1) {
+            let mut film = job.new_film();
+            self.fast.accumulate(&job, number * each..(number + 1) * each, &mut film, self.stop)?;
+            for (half, pixels) in film.halves().iter().enumerate() {
+                let count = film.half_sample_count(half) as f64;
+                if count == 0.0 {
+                    continue;
+                }
+                parts += 1.0;
+                sums[half].resize(pixels.len(), [0.0; 3]);
+                squares.resize(pixels.len(), [0.0; 3]);
+                let all = sums[half].iter_mut().zip(&mut squares);
+                for ((sum, square), value) in all.zip(pixels) {
+                    for (channel, value) in value.radiance().into_iter().enumerate() {
+                        sum[channel] += value / count;
+                        square[channel] += (value / count).powi(2) * count;
+                    }
+                }
             }
         }
-    }
-    let times = product / square;
-    if times.abs() < LEAST_FIT {
-        return rendered;
-    }
-    hypothesis.note = Some(match fit {
-        Fit::Gain => format!("your picture is {:.3} times as bright as ours, in linear values", 1.0 + times),
-        Fit::Carry => format!("each pixel holds about 1/{:.0} of the one before", 1.0 / times),
-    });
-    rendered.map(|half| {
-        let add = |index: usize| [0, 1, 2].map(|c| half[index][c] + times * half[from(index)][c]);
-        (0..half.len()).map(add).collect()
-    })
-}
-
-/// Mean squared error beyond noise over blocks and channels, in display values.
-fn misfit(test: &BlockTest, values: &[[f64; 3]], expected: &[[f64; 3]], width: usize) -> f64 {
-    let (mut sum, mut count) = (0.0, 0_usize);
-    for block in &test.blocks {
-        for (channel, mean) in block.means.into_iter().enumerate().filter(|(c, _)| block.is_known(*c)) {
-            let pixels = || pixels_of(block, width);
-            let number = pixels().count() as f64;
-            let bright = pixels().map(|pixel| expected[pixel][channel]).sum::<f64>() / number;
-            let spread: f64 = pixels().map(|pixel| (values[pixel][channel] - mean).powi(2)).sum();
-            let noise = spread / (number * (number - 1.0).max(1.0));
-            // The derivative of the square root converts linear errors to displayed ones.
-            sum += (mean * mean - noise) / (4.0 * bright.max(0.02));
-            count += 1;
+        if sums[1].is_empty() {
+            sums[1] = sums[0].clone();
+            parts *= 2.0;
+            squares.iter_mut().for_each(|square| *square = square.map(|x| 2.0 * x));
         }
-    }
-    // Without any known value, nothing is explained.
-    if count == 0 { f64::INFINITY } else { sum / count as f64 }
-}
-
-/// Indices of a block's pixels.
-pub fn pixels_of(block: &Block, width: usize) -> impl Iterator<Item = usize> + Clone + use<> {
-    let (x, y) = (block.x.clone(), block.y.clone());
-    y.flat_map(move |y| x.clone().map(move |x| y as usize * width + x as usize))
-}
-
-/// How far a direction leads from a hypothesis towards the reader's picture: 0 if the hypothesis is right, and 1 if the
-/// picture at the end of the direction is.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Slope {
-    pub at: f64,
-    /// The same in deviations, from the blocks' own scatter.
-    pub deviations: f64,
-}
-
-impl Slope {
-    /// Whether the direction leads at least as far, as clearly.
-    pub fn is_beyond(&self, limit: Slope) -> bool {
-        self.at > limit.at && self.deviations > limit.deviations
+        let count = each as f64 / if samples > 1 { 2.0 } else { 1.0 };
+        let variance = squares.iter().enumerate().map(|(at, square)| {
+            [0, 1, 2].map(|c| {
+                let mean = (sums[0][at][c] + sums[1][at][c]) / parts;
+                ((square[c] - count * parts * mean * mean) / (parts - 1.0)).max(0.0)
+            })
+        });
+        let variance: Vec<[f64; 3]> = variance.collect();
+        let half = |sum: &Vec<[f64; 3]>| sum.iter().map(|sum| sum.map(|x| 2.0 * x / parts)).collect();
+        Ok(Rendered::new(sums.each_ref().map(half), &variance, samples, recipe.settings.width as usize))
     }
 }
 
-/// The residual of the reader's picture under a hypothesis, regressed on directions, pixel by pixel. The noise of the
-/// renders does not bias it, since each product combines different halves.
-pub struct Rest<'a> {
-    seen: &'a Seen,
-    from: &'a Rendered,
-    blocks: Vec<Block>,
-    /// Of each block and channel; 0 if the channel is not known.
-    weights: Vec<[f64; 3]>,
-}
-
-impl<'a> Rest<'a> {
-    pub fn new(seen: &'a Seen, from: &'a Rendered) -> Self {
-        let width = seen.size[0] as usize;
-        let blocks = blocks_of(seen.size[0], seen.values.len());
-        let mean = from.mean();
-        let weight = |block: &Block, channel: usize| {
-            let (mut sum, mut square, mut step, mut count) = (0.0, 0.0, 0.0, 0.0);
-            for pixel in pixels_of(block, width) {
-                let rest = seen.values[pixel][channel] - mean[pixel][channel];
-                sum += rest;
-                square += rest * rest;
-                step += seen.half_steps[pixel][channel];
+/// Half of each variance, and half the mean around it: one pixel's own is a poor estimate.
+fn smoothed(variance: &[[f64; 3]], width: usize) -> Vec<[f64; 3]> {
+    let height = variance.len() / width.max(1);
+    let near = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
+    let at = |pixel: usize| {
+        let (mut sum, mut count) = ([0.0; 3], 0.0);
+        for y in near(pixel / width, height) {
+            for near in near(pixel % width, width).map(|x| &variance[y * width + x]).filter(|near| near[0].is_finite()) {
+                (0..3).for_each(|c| sum[c] += near[c]);
                 count += 1.0;
             }
-            let (mean, step) = (sum / count, step / count);
-            let weight = 1.0 / ((square / count - mean * mean).max(0.0) + step * step + 1e-6);
-            if sum.is_finite() && weight.is_finite() { weight } else { 0.0 }
-        };
-        let weights = blocks.iter().map(|block| [0, 1, 2].map(|channel| weight(block, channel))).collect();
-        Rest { seen, from, blocks, weights }
-    }
-
-    /// How far the residual leads in the direction of another picture: over the whole picture, then over each ninth of
-    /// it. With `is_local`, the means of the blocks are left out, so that only details count.
-    pub fn slopes(&self, to: &Rendered, is_local: bool) -> [Slope; 10] {
-        let width = self.seen.size[0] as usize;
-        let (mut products, mut squares, mut scatters) = ([0.0; 10], [0.0; 10], [0.0; 10]);
-        for (block, weights) in self.blocks.iter().zip(&self.weights) {
-            let (mut product, mut square) = (0.0, 0.0);
-            for channel in (0..3).filter(|channel| weights[*channel] > 0.0) {
-                // The sums of both halves' rests and directions, of their products, and of the directions' product.
-                let mut sums = [0.0; 7];
-                for pixel in pixels_of(block, width) {
-                    let value = self.seen.values[pixel][channel];
-                    let [a, b] = self.from.halves.each_ref().map(|half| half[pixel][channel]);
-                    let [c, d] = to.halves.each_ref().map(|half| half[pixel][channel]);
-                    // A value at an end of its range is only a bound.
-                    if value > 0.985 || a.max(b) > 0.97 || a.min(b) < self.seen.half_steps[pixel][channel] {
-                        continue;
-                    }
-                    let (rests, directions) = ([value - a, value - b], [c - a, d - b]);
-                    let products = rests[0] * directions[1] + rests[1] * directions[0];
-                    let of = [
-                        1.0,
-                        rests[0],
-                        rests[1],
-                        directions[0],
-                        directions[1],
-                        products,
-                        directions[0] * directions[1],
-                    ];
-                    (0..7).for_each(|index| sums[index] += of[index]);
-                }
-                let [count, rest_a, rest_b, direction_a, direction_b, mut products, mut directions] = sums;
-                if is_local && count > 0.0 {
-                    products -= (rest_a * direction_b + rest_b * direction_a) / count;
-                    directions -= direction_a * direction_b / count;
-                }
-                product += 0.5 * weights[channel] * products;
-                square += weights[channel] * directions;
-            }
-            let [width, height] = self.seen.size;
-            let ninth = |at: u32, side: u32| (3 * at / side.max(1)) as usize;
-            for index in [0, 1 + ninth(block.x.start, width) + 3 * ninth(block.y.start, height)] {
-                products[index] += product;
-                squares[index] += square;
-                scatters[index] += product * product;
-            }
         }
-        std::array::from_fn(|index| {
-            if squares[index] <= 0.0 || scatters[index] == 0.0 {
-                return Slope::default();
-            }
-            Slope {
-                at: products[index] / squares[index],
-                deviations: products[index] / scatters[index].sqrt(),
-            }
-        })
-    }
+        [0, 1, 2].map(|c| 0.5 * variance[pixel][c] + 0.5 * sum[c] / count)
+    };
+    (0..variance.len()).map(at).collect()
 }

@@ -1,646 +1,583 @@
-//! Finds the stage that a picture shows, and decides whether it is right or which mistake explains it.
+//! Finds the section, the edition and the writing that a picture shows, and decides whether it is right, or which mistake or
+//! number explains it.
 
 use super::Mine;
-use super::hypothesis::{Compared, Hypothesis, Mistake, Rendered, Rest, Slope, Studio, compare, rough};
+use super::fit::Fit;
+use super::hypothesis::{Added, Hypothesis, Mistake, Rendered, Studio};
 use super::mask::{enlarged, grown};
 use super::mistakes::applying_to;
-use super::noise::{Grain, grain, is_shared};
+use super::noise::{altered, is_shared};
+use super::numbers::{What, candidates, finished};
 use super::random::{common, complete, fixed};
-use super::written::{Seen, Written};
-use crate::job::recipe::Recipe;
-use crate::stages::{Stage, SurfaceRule};
+use super::screen::{Screen, small};
+use super::written::{Seen, Written, reduced};
+use crate::stages::Stage;
 use anyhow::{Context, Result};
-use std::cmp::Ordering;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
-/// Samples per pixel of the right picture, and of the other candidates.
-const FINE: [u64; 2] = [256, 128];
+/// Samples per pixel of a picture in full size, by the program's own tracer and by the plain one.
+const FINE: [u64; 2] = [256, 64];
 
-/// Samples per pixel of the first, small pictures, and their width.
-const SMALL: u64 = 64;
+/// Width of the small pictures, pixels, and their samples per pixel by each tracer.
 const SMALL_WIDTH: u32 = 80;
+const SMALL: [u64; 2] = [16, 4];
 
-/// Samples per pixel when the stage is unknown.
-const TINY: u64 = 16;
+/// Hypotheses that are compared in full size: written otherwise, and with mistakes.
+const COMPARED: [usize; 2] = [6, 6];
 
-/// Mistakes rendered in full size.
-const REFINED: usize = 6;
+/// Mean square of the blocks' means, in bytes, below which a mistake may only show in single pixels.
+const FINE_MOST: f64 = 4.0;
 
-/// A mistake that leaves more than this share of the squared error is not rendered in full size.
-const HOPELESS: f64 = 0.7;
+/// Bases on which mistakes are tried, where one is near; and those on which the plain tracer renders them, too.
+const BASES: usize = 2;
+const PLAIN: usize = 3;
 
-/// Nor is one that leaves more than this many times the squared error of the best one, and more than [`NEARLY`].
-const FAR: f64 = 10.0;
-
-/// A mistake is offered as a guess if it leaves less than this share of the right picture's squared error.
-const EXPLAINED: f64 = 0.3;
-
-/// A hypothesis is rejected if another one leads this far from it towards the reader's picture, significantly.
-const LEADS: Slope = Slope { at: 0.4, deviations: 5.0 };
-
-/// As above, for one that leads nearly all the way.
-const LEADS_FAR: Slope = Slope { at: 0.6, deviations: 4.0 };
-
-/// As above, to render a mistake in full size.
-const LEADS_ROUGHLY: Slope = Slope { at: 0.15, deviations: 3.0 };
-
-/// As above, between pictures that differ only in their encoding, because rounding leads halfway.
-const LEADS_IN_BYTES: f64 = 0.6;
-
-/// As above, for shifts (pixels) and for blur (pixels squared).
-const SHIFTED: f64 = 0.2;
-const BLURRED: f64 = 0.15;
-
-/// Misfits below this are equal; display values squared.
-const ALIKE: f64 = 5e-6;
-
-/// Largest misfit at which a changed picture can be recognised; display values squared.
-const NEARLY: f64 = 3e-4;
-
-/// Minimum samples per pixel to distinguish a fault from noise.
-const SAMPLES_LEAST: f64 = 8.0;
-
-/// Stages judged when the stage is unknown.
-const CANDIDATES: usize = 4;
-
-/// Root mean square difference below which a stage counts as recognised, display values.
+/// Root mean square difference below which a base is near, displayed values, and how much farther another may be.
 const FOUND: f64 = 0.03;
-
-/// Stages whose difference exceeds the least one by more than this are not judged.
 const NEAR: f64 = 0.02;
 
-/// Least difference between a pixel's neighbours at an edge, linear radiance. Noise stays below it.
-const EDGE: f64 = 0.05;
+/// Mean square of the blocks' means, in bytes, above which the levels of bytes do not matter, and nothing is explained.
+const FAR: f64 = 100.0;
 
-/// Difference between small pictures where a mistake changes something, linear radiance.
-const CHANGED: f64 = 0.0015;
+/// A guess must leave less than this share of what differs.
+const EXPLAINED: f64 = 0.5;
+
+/// The reader's picture compared with a hypothesis.
+#[derive(Clone, Debug)]
+pub struct Compared {
+    pub hypothesis: Hypothesis,
+    pub rendered: Rendered,
+    pub fit: Fit,
+}
 
 #[derive(Clone, Debug)]
 pub struct Finding {
     pub stage: &'static Stage,
+    /// The right picture that is closest: of an edition, written in some way.
     pub right: Compared,
-    /// The mistake, or the accepted variant; `None` if the picture equals ours, or nothing explains it.
-    pub mistake: Option<Compared>,
-    /// Whether the right picture, or the one with the mistake, leaves only noise.
+    /// What explains the picture, or most of it; `None` if it is right, or nothing does.
+    pub found: Option<Compared>,
+    /// Whether the right picture, or what was found, leaves only noise.
     pub is_sure: bool,
-    /// Other mistakes that explain the picture as well.
-    pub alike: Vec<&'static Mistake>,
-    pub grain: Option<Grain>,
+    /// Others that explain it as well.
+    pub alike: Vec<Hypothesis>,
+    /// What seems to have changed the file since it was written.
+    pub altered: Option<&'static str>,
     /// Pixels that were not compared, because they depend on where small spheres are placed.
     pub ignored: Option<Arc<[bool]>>,
 }
 
 impl Finding {
-    /// Whether the picture differs from the book's only by noise.
+    /// Whether the picture is right, perhaps for another edition.
     pub fn is_right(&self) -> bool {
-        self.mistake.is_none() && self.is_sure
+        self.found.is_none() && self.is_sure
     }
 
+    /// The mistake, or what the reader does otherwise and is right.
     pub fn named(&self) -> Option<&'static Mistake> {
-        self.mistake.as_ref()?.hypothesis.mistake
+        self.found.as_ref().unwrap_or(&self.right).hypothesis.named()
     }
 
-    /// Whether the picture is right for its section, though it differs from ours.
-    pub fn is_other_right(&self) -> bool {
-        self.is_sure && self.named().is_some_and(|mistake| mistake.is_right)
+    /// The reader's samples per pixel, if the noise tells.
+    pub fn samples(&self) -> Option<f64> {
+        self.found.as_ref().unwrap_or(&self.right).fit.samples
     }
 
-    /// Adds mistakes that explain the picture as well.
-    fn add_alike(&mut self, others: impl IntoIterator<Item = &'static Mistake>) {
-        for other in others {
-            let known = self.named().into_iter().chain(self.alike.iter().copied());
-            if known.into_iter().all(|known| known.id != other.id) {
-                self.alike.push(other);
-            }
-        }
+    fn is_settled(&self) -> bool {
+        self.is_sure || self.found.is_some()
     }
-
-    /// Whether the reader's noise is too strong for a verdict, or something has changed the picture.
-    pub fn is_too_little(&self) -> bool {
-        let grain = |grain: &Grain| grain.altered.is_some() || grain.samples < SAMPLES_LEAST;
-        !self.is_sure && self.grain.as_ref().is_some_and(grain)
-    }
-
-    /// Ranks findings of different stages: lower is closer.
-    fn rank(&self) -> (u8, f64) {
-        let misfit = self.mistake.as_ref().unwrap_or(&self.right).misfit;
-        match self.is_sure {
-            true if self.mistake.is_none() => (0, misfit),
-            true if self.is_other_right() => (1, misfit),
-            // A mistake must leave clearly less than what is right elsewhere.
-            true => (1, alike_below(misfit)),
-            false => (2, misfit),
-        }
-    }
-
-    fn closeness(&self, other: &Finding) -> Ordering {
-        let [(class, misfit), (their_class, their_misfit)] = [self.rank(), other.rank()];
-        class.cmp(&their_class).then(misfit.total_cmp(&their_misfit))
-    }
-}
-
-/// Pictures with misfits below this may be the same as one of this misfit.
-fn alike_below(misfit: f64) -> f64 {
-    3.0 * misfit.max(0.0) + ALIKE
 }
 
 /// Judges a picture, of `stage` if that is known. Reports each attempt to `say`.
-pub fn judge(mine: &Mine, stage: Option<&'static Stage>, mut say: impl FnMut(String)) -> Result<Finding> {
-    if let Some(stage) = stage {
-        return judge_of(mine, stage, &mut say);
+///
+/// # Errors
+/// If memory does not suffice, or after `stop` is set.
+pub fn judge(
+    mine: &Mine,
+    stage: Option<&'static Stage>,
+    stop: &AtomicBool,
+    mut say: impl FnMut(String),
+) -> Result<Finding> {
+    let say: &mut dyn FnMut(String) = &mut say;
+    if let Some(stage) = stage.filter(|stage| stage.setup.has_random_spheres) {
+        return judge_random(mine, stage, stop, say, true);
     }
-    let near = candidates(mine, false, &mut say)?;
-    let found = judge_among(mine, &near, &mut say)?;
-    let is_settled = |found: &Finding| {
-        found.is_sure || found.is_too_little() || found.named().is_some_and(|named| named.id == SHARED)
+    let stages: Vec<&Stage> = match stage {
+        Some(stage) => vec![stage],
+        None => Stage::walk().filter(|stage| !stage.setup.has_random_spheres).collect(),
     };
-    if let Some(found) = found.as_ref().filter(|found| is_settled(found)) {
-        return Ok(found.clone());
+    let found = Search { mine, studio: Studio::new(stop)?, known: Vec::new(), say }.judged(&stages, true)?;
+    if found.is_settled() || stage.is_some() {
+        return Ok(found);
     }
-    for stage in Stage::ALL.iter().filter(|stage| stage.setup.has_random_spheres) {
-        let last = judge_of(mine, stage, &mut say)?;
+    for stage in Stage::walk().filter(|stage| stage.setup.has_random_spheres) {
+        let last = judge_random(mine, stage, stop, say, false)?;
         if last.is_sure {
             return Ok(last);
         }
     }
-    let mut more = candidates(mine, true, &mut say)?;
-    more.retain(|stage| !near.contains(stage));
-    let found = found.into_iter().chain(judge_among(mine, &more, &mut say)?);
-    found.min_by(Finding::closeness).context("there is no stage to compare with")
-}
-
-/// Judges a picture of this stage.
-fn judge_of(mine: &Mine, stage: &'static Stage, say: &mut impl FnMut(String)) -> Result<Finding> {
-    if stage.setup.has_random_spheres {
-        say(format!("looking for what all pictures of {} {} have in common", stage.section, stage.title));
-    }
-    let fixed = fixed(mine, stage)?;
-    let mut found = judge_among(&fixed, &[stage], say)?.context("there is no stage to compare with")?;
-    found.ignored.clone_from(&fixed.ignored);
-    complete(&mut found.right, found.ignored.as_deref(), stage)?;
     Ok(found)
 }
 
-/// The closest finding among these stages.
-fn judge_among(
+/// Judges a picture of a stage whose small spheres each program places elsewhere.
+fn judge_random(
     mine: &Mine,
-    stages: &[&'static Stage],
-    say: &mut impl FnMut(String),
-) -> Result<Option<Finding>> {
-    let (mut trials, mut findings) = (Vec::new(), Vec::new());
-    for stage in stages {
-        say(format!("comparing with {} {}", stage.section, stage.title));
-        let trial = Trial::new(mine, stage)?;
-        if !trial.right.is_noise {
-            trials.push(trial);
-            continue;
-        }
-        let finding = trial.finding()?;
-        if finding.is_right() {
-            return Ok(Some(finding));
-        }
-        findings.push(finding);
-    }
-    for trial in trials {
-        if findings.iter().any(Finding::is_other_right) {
-            break;
-        }
-        say(format!("trying the mistakes of {} {}", trial.stage.section, trial.stage.title));
-        findings.push(trial.finding()?);
-    }
-    findings.sort_by(Finding::closeness);
-    let mut findings = findings.into_iter();
-    let Some(mut best) = findings.next() else { return Ok(None) };
-    if let Some(found) = best.mistake.as_ref().filter(|_| best.is_sure && !best.is_other_right()) {
-        let limit = alike_below(found.misfit);
-        for other in findings {
-            // The reader may have meant another stage, whose right picture this is.
-            best.is_sure &= other.right.misfit >= limit;
-            let is_as_close = other.mistake.as_ref().is_some_and(|found| found.misfit < limit);
-            best.add_alike(other.named().filter(|_| other.is_sure && is_as_close));
-        }
-    }
-    Ok(Some(best))
-}
-
-/// A picture compared with the right one of a stage.
-struct Trial<'a> {
-    mine: &'a Mine,
     stage: &'static Stage,
-    studio: Studio,
-    seen: Seen,
-    right: Compared,
+    stop: &AtomicBool,
+    say: &mut dyn FnMut(String),
+    is_thorough: bool,
+) -> Result<Finding> {
+    say(format!("looking for what all pictures of {} {} have in common", stage.section, stage.title));
+    let mut studio = Studio::new(stop)?;
+    let fixed = fixed(mine, stage, &mut studio, factor([mine.width, mine.height]))?;
+    let mut search = Search { mine: &fixed, studio, known: Vec::new(), say };
+    let mut found = search.judged(&[stage], is_thorough)?;
+    complete(&mut found.right, &fixed, &mut search.studio)?;
+    found.ignored.clone_from(&fixed.ignored);
+    Ok(found)
 }
 
-/// A hypothesis that may explain the picture, and the picture decoded accordingly.
-struct Candidate {
-    found: Compared,
-    seen: Seen,
+struct Search<'a> {
+    mine: &'a Mine,
+    studio: Studio<'a>,
+    /// Pictures in full size.
+    known: Vec<(Hypothesis, Rendered)>,
+    say: &'a mut dyn FnMut(String),
 }
 
-impl<'a> Trial<'a> {
-    fn new(mine: &'a Mine, stage: &'static Stage) -> Result<Self> {
-        let mut studio = Studio::new(common(stage), [mine.width, mine.height])?;
-        let hypothesis = Hypothesis::right(studio.recipe());
-        let rendered = studio.halves(&hypothesis, 1, FINE[0], None)?;
-        let seen = Seen::of(mine, &hypothesis.written, |_, _| 0.0);
-        let right = compare(&seen, hypothesis, rendered);
-        Ok(Trial { mine, stage, studio, seen, right })
-    }
-
-    fn seen(&self, written: &Written) -> Seen {
-        if *written == self.right.hypothesis.written {
-            return self.seen.clone();
-        }
-        Seen::of(self.mine, written, |pixel, channel| self.right.expected[pixel][channel])
-    }
-
-    /// The best of the right picture and the mistakes.
-    fn finding(mut self) -> Result<Finding> {
-        let mut candidates = vec![Candidate { found: self.right.clone(), seen: self.seen.clone() }];
-        for (hypothesis, mut mask) in self.screened()? {
-            if let Some(ignored) = &self.mine.ignored {
-                let mask = mask.get_or_insert_with(|| vec![true; ignored.len()]);
-                mask.iter_mut()
-                    .zip(ignored.iter())
-                    .for_each(|(is_traced, is_ignored)| *is_traced &= !is_ignored);
+impl Search<'_> {
+    /// Judges a picture of one of these stages; mistakes are only tried if `is_thorough`.
+    fn judged(&mut self, stages: &[&'static Stage], is_thorough: bool) -> Result<Finding> {
+        let ranked = self.ranked(stages)?;
+        let distance = |misfit: f64| misfit.max(0.0).sqrt();
+        let least = ranked.first().map_or(f64::INFINITY, |(misfit, _)| distance(*misfit));
+        let is_near = least < FOUND;
+        let limit = if is_near { 1.5 * least + NEAR } else { least };
+        let near = || ranked.iter().filter(|(misfit, _)| distance(*misfit) <= limit).map(|(_, it)| it);
+        let mut rights: Vec<Compared> = Vec::new();
+        for hypothesis in near().filter(|it| it.is_right()).take(COMPARED[0]) {
+            let stage = hypothesis.stage;
+            (self.say)(format!("comparing with {} {}", stage.section, stage.title));
+            let found = self.with_levels(hypothesis)?;
+            if found.fit.is_enough() {
+                return Ok(self.finding(found, None, Vec::new()));
             }
-            // The plain tracer is slow: it takes fewer samples of more pixels.
-            let samples = if hypothesis.steps.is_some() && mask.is_none() { FINE[1] / 2 } else { FINE[1] };
-            let rendered = match hypothesis.is_right_before_writing(self.studio.recipe()) {
-                true => self.right.rendered.clone(),
-                false => self.studio.halves(&hypothesis, 1, samples, mask.as_deref())?,
-            };
-            let halves = [0, 1].map(|half| self.filled(&rendered.halves[half], half));
-            let rendered = Rendered { halves, ..rendered };
-            let seen = self.seen(&hypothesis.written);
-            let found = compare(&seen, hypothesis, rendered);
-            // Nothing was fitted: it is the right picture.
-            if found.hypothesis.fit.is_none() || found.hypothesis.note.is_some() {
-                candidates.push(Candidate { found, seen });
-            }
+            rights.push(found);
         }
-        candidates.sort_by(|a, b| a.found.misfit.total_cmp(&b.found.misfit));
-        let mistake_of = |candidate: &Candidate| candidate.found.hypothesis.mistake;
-        let fitting: Vec<&Candidate> = (0..candidates.len())
-            .filter(|index| fits(&candidates, *index, self.studio.recipe()))
-            .map(|index| &candidates[index])
-            .collect();
-        let limit = fitting.first().map_or(f64::INFINITY, |best| alike_below(best.found.misfit));
-        let right = fitting.iter().find(|candidate| mistake_of(candidate).is_none());
-        let other_right = || {
-            let is_right = |candidate: &&&Candidate| mistake_of(candidate).is_some_and(|it| it.is_right);
-            fitting.iter().filter(|candidate| candidate.found.misfit < limit).find(is_right)
+        // An edition must be nearer than the book.
+        let key = |it: &Compared| it.fit.excess * if it.hypothesis.rows.is_empty() { 1.0 } else { 1.5 };
+        rights.sort_by(|a, b| key(a).total_cmp(&key(b)));
+        let mut others: Vec<Hypothesis> = rights.iter().map(|it| it.hypothesis.clone()).collect();
+        others.dedup_by(|a, b| a.stage.id == b.stage.id && a.is_traced_as(b));
+        let right = match rights.into_iter().next() {
+            Some(right) => right,
+            None => {
+                let nearest = ranked.iter().find(|(_, it)| it.is_right());
+                self.with_levels(&nearest.context("there is no stage to compare with")?.1)?
+            }
         };
-        let chosen = right.or_else(other_right).or(fitting.first()).copied();
-        let nearest = chosen.unwrap_or(&candidates[0]);
-        let is_near = nearest.found.misfit < NEARLY;
-        let mut finding = Finding {
-            stage: self.stage,
-            right: self.right.clone(),
-            mistake: None,
-            is_sure: true,
-            alike: Vec::new(),
-            // If the stage does not fit, the noise tells nothing. Where a part of the picture is ignored, most of the rest is
-            // sky, which has no noise.
-            grain: grain(self.mine, &nearest.seen, &nearest.found)
-                .map(|grain| Grain { altered: grain.altered.filter(|_| is_near), ..grain })
-                .filter(|grain| is_near || grain.samples >= SAMPLES_LEAST)
-                .filter(|_| self.mine.ignored.is_none()),
+        let mut enough = Vec::new();
+        for hypothesis in near().filter(|it| !it.is_right()).take(COMPARED[0]) {
+            if hypothesis.written.wraps && !self.has_wrapped(&right) {
+                continue;
+            }
+            let found = self.with_levels(hypothesis)?;
+            if found.fit.is_enough() {
+                enough.push(found);
+            }
+        }
+        if let Some(finding) = self.explained(&right, enough) {
+            return Ok(finding);
+        }
+        if !is_thorough {
+            return Ok(self.finding(right, None, Vec::new()));
+        }
+        if is_near {
+            others.truncate(BASES);
+            return self.wrong(right, &others);
+        }
+        let bases = bases(&ranked, stages.len());
+        let right = self.compared(&bases[0])?;
+        self.wrong(right, &bases)
+    }
+
+    /// Whether the reader's picture is black where ours is white.
+    fn has_wrapped(&self, right: &Compared) -> bool {
+        let seen = self.seen(&right.hypothesis.written, None);
+        let pixels = seen.values.iter().zip(&right.rendered.halves[0]);
+        pixels.filter(|(seen, ours)| (0..3).any(|c| seen[c] < 0.01 && ours[c] > 0.9)).count() > 5
+    }
+
+    /// The finding if some of these explain the picture.
+    fn explained(&self, right: &Compared, mut enough: Vec<Compared>) -> Option<Finding> {
+        if enough.is_empty() {
+            return None;
+        }
+        let first = enough.remove(0);
+        let mut alike: Vec<Hypothesis> = Vec::new();
+        for other in enough {
+            if alike.iter().chain([&first.hypothesis]).all(|known| !is_same(known, &other.hypothesis)) {
+                alike.push(other.hypothesis);
+            }
+        }
+        Some(self.finding(right.clone(), Some(first), alike))
+    }
+
+    fn finding(&self, right: Compared, found: Option<Compared>, alike: Vec<Hypothesis>) -> Finding {
+        let explains = found.as_ref().unwrap_or(&right);
+        Finding {
+            stage: explains.hypothesis.stage,
+            is_sure: explains.fit.is_enough(),
+            altered: altered(self.mine),
+            right,
+            found,
+            alike,
             ignored: None,
-        };
-        let is_altered = finding.grain.is_some_and(|grain| grain.altered.is_some());
-        if let Some(chosen) = chosen.filter(|_| !is_altered) {
-            finding.mistake = mistake_of(chosen).map(|_| chosen.found.clone());
-            if finding.mistake.is_some() && !finding.is_other_right() {
-                let limit = alike_below(chosen.found.misfit);
-                let alike = fitting.iter().filter(|other| other.found.misfit < limit);
-                finding.add_alike(alike.filter_map(|other| mistake_of(other)));
+        }
+    }
+
+    /// Tries mistakes and numbers on these bases, of which `right` is the first.
+    fn wrong(&mut self, right: Compared, bases: &[Hypothesis]) -> Result<Finding> {
+        let factor = factor(right.hypothesis.size());
+        let (mut screened, mut fine) = (Vec::new(), Vec::new());
+        for (rank, base) in bases.iter().enumerate() {
+            let stage = base.stage;
+            (self.say)(format!("trying the mistakes of {} {}", stage.section, stage.title));
+            let seen = self.seen(&base.written, None);
+            let mut screen = Screen::new(&mut self.studio, base, &seen, factor, right.fit.samples)?;
+            let nothing = screen.excess(base)?;
+            for mistake in applying_to(&base.recipe).filter(|it| !it.is_right && it.id != SHARED) {
+                for hypothesis in mistake.pictures(base) {
+                    let is_on_right = rank == 0 && right.fit.excess < FINE_MOST;
+                    if hypothesis.added.is_some() || hypothesis.is_fine {
+                        if rank == 0 && (is_on_right || hypothesis.added.is_some()) {
+                            fine.push(hypothesis);
+                        }
+                        continue;
+                    }
+                    let is_plain = hypothesis.steps.is_some() && base.steps.is_none();
+                    if hypothesis.is_traced_as(base)
+                        || hypothesis.written.order.exchanges_sides()
+                        || is_plain && rank >= PLAIN
+                    {
+                        continue;
+                    }
+                    let excess = screen.excess(&hypothesis)?;
+                    if excess < EXPLAINED * nothing.max(0.0) + FINE_MOST {
+                        screened.push((excess, hypothesis));
+                    }
+                }
             }
+        }
+        screened.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        let limit = 3.0 * screened.first().map_or(0.0, |(excess, _)| excess.max(0.0)) + FINE_MOST;
+        screened.retain(|(excess, _)| *excess < limit);
+        screened.truncate(COMPARED[1]);
+        let mut compared = Vec::new();
+        for hypothesis in screened.into_iter().map(|(_, hypothesis)| hypothesis).chain(fine) {
+            let named = hypothesis.named().map_or("a mistake", |named| named.title);
+            (self.say)(format!("comparing: {named}"));
+            compared.push(self.compared(&hypothesis)?);
+        }
+        let enough = |compared: &[Compared]| compared.iter().filter(|it| it.fit.is_enough()).cloned().collect();
+        if let Some(finding) = self.explained(&right, enough(&compared)) {
             return Ok(finding);
         }
-        // Every generator gives another picture, so this one is never sure.
-        finding.is_sure = false;
-        let shared = applying_to(self.studio.recipe()).find(|mistake| mistake.id == SHARED);
-        if let Some(shared) = shared.filter(|shared| is_shared(&self.seen, &self.right, shared)) {
-            let mut found = self.right.clone();
-            found.hypothesis.mistake = Some(shared);
-            finding.mistake = Some(found);
-            return Ok(finding);
+        for base in bases.iter().take(PLAIN) {
+            self.numbers(base, factor, right.fit.samples, &mut compared)?;
+            if let Some(finding) = self.explained(&right, enough(&compared)) {
+                return Ok(finding);
+            }
         }
-        let guess = candidates.iter().find(|candidate| candidate.found.hypothesis.mistake.is_some());
-        let limit = EXPLAINED * self.right.misfit;
-        finding.mistake = guess.map(|guess| guess.found.clone()).filter(|guess| guess.misfit < limit);
+        let mut finding = self.finding(right, None, Vec::new());
+        let shared = applying_to(&finding.right.hypothesis.recipe).find(|mistake| mistake.id == SHARED);
+        let shared = shared.and_then(|shared| shared.pictures(&finding.right.hypothesis).pop());
+        let seen = self.seen(&finding.right.hypothesis.written, None);
+        let guess = match shared.filter(|shared| is_shared(&seen, &finding.right, shared)) {
+            Some(hypothesis) => Some(Compared { hypothesis, ..finding.right.clone() }),
+            None => {
+                let wrong = compared.into_iter().filter(|it| !it.hypothesis.is_right());
+                let nearest = wrong.min_by(|a, b| a.fit.excess.total_cmp(&b.fit.excess));
+                nearest.filter(|it| it.fit.excess < FAR.min(EXPLAINED * finding.right.fit.excess))
+            }
+        };
+        if let Some(guess) = guess {
+            (finding.stage, finding.found) = (guess.hypothesis.stage, Some(guess));
+        }
         Ok(finding)
     }
 
-    /// Whether the file decodes to the same picture with this encoding.
-    fn is_as_right(&self, written: &Written) -> bool {
-        let seen = self.seen(written);
-        let is_same = |(a, b): (&f64, &f64)| a == b || a.is_nan() && b.is_nan();
-        let [a, b] = [&seen, &self.seen].map(|seen| seen.values.as_flattened());
-        seen.size == self.seen.size && a.iter().zip(b).all(is_same)
+    /// Tries other numbers on a base: single ones, and if none is enough, those that are typed together.
+    fn numbers(
+        &mut self,
+        base: &Hypothesis,
+        factor: u32,
+        samples: Option<f64>,
+        compared: &mut Vec<Compared>,
+    ) -> Result<()> {
+        let stage = base.stage;
+        (self.say)(format!("trying the numbers of {} {}", stage.section, stage.title));
+        let seen = self.seen(&base.written, None);
+        let mut screen = Screen::new(&mut self.studio, base, &seen, factor, samples)?;
+        let kinds = candidates(&mut screen)?;
+        for kind in kinds {
+            for (group, start) in kind {
+                let words = group.iter().map(|what| what.words(what.of(&start), base)).collect::<Vec<_>>();
+                (self.say)(format!("comparing: {}", words.join(", ")));
+                compared.push(self.with_numbers(&seen, base, &group, start)?);
+            }
+            if compared.iter().any(|it| it.fit.is_enough()) {
+                break;
+            }
+        }
+        Ok(())
     }
 
-    /// A half of a picture, filled with the right one where the mask left it out.
-    fn filled(&self, rendered: &[[f64; 3]], half: usize) -> Vec<[f64; 3]> {
-        let right = &self.right.rendered.halves[half];
-        let pixels = rendered.iter().zip(right);
-        pixels.map(|(pixel, right)| if pixel[0].is_nan() { *right } else { *pixel }).collect()
-    }
-
-    /// The mistakes that may explain the picture, judged by small renders, each with a mask of the pixels that it changes.
-    fn screened(&mut self) -> Result<Vec<(Hypothesis, Option<Vec<bool>>)>> {
-        let recipe = self.studio.recipe().clone();
-        let factor = factor(self.right.hypothesis.size(), recipe.rules.antialiasing);
-        let [width, height] = self.right.hypothesis.size().map(|side| side as usize);
-        let small_right = self.right.rendered.reduced(width, factor as usize);
-        let plain_right = {
-            let mut plain = self.right.hypothesis.clone();
-            plain.plain();
-            self.studio.halves(&plain, factor, SMALL, None)?
+    fn with_numbers(
+        &mut self,
+        seen: &Seen,
+        base: &Hypothesis,
+        group: &[What],
+        start: Hypothesis,
+    ) -> Result<Compared> {
+        let render = &mut |of: &Hypothesis, is_full: bool| {
+            if is_full {
+                return self.rendered(of);
+            }
+            self.studio.render(&of.fast(), 1, FINE[0] / 8, None)
         };
-        let small_seen = self.seen.reduced(factor);
-        let (right, _, right_misfit) = rough(&small_seen, self.right.hypothesis.clone(), small_right.clone());
-        let rest = Rest::new(&small_seen, &small_right);
-        let mut fine: Vec<(Hypothesis, Option<Vec<bool>>)> = Vec::new();
+        let (hypothesis, rendered, fit) = finished(render, seen, base, group, start)?;
+        Ok(Compared { hypothesis, rendered, fit })
+    }
+
+    /// The reader's picture, written in this way; `expected` tells which zeros are whites that wrapped around.
+    fn seen(&self, written: &Written, expected: Option<&[[f64; 3]]>) -> Seen {
+        Seen::of(self.mine, written, |pixel, channel| expected.map_or(0.0, |pixels| pixels[pixel][channel]))
+    }
+
+    /// A hypothesis in full size.
+    fn compared(&mut self, hypothesis: &Hypothesis) -> Result<Compared> {
+        let mut hypothesis = hypothesis.clone();
+        let mut rendered = self.rendered(&hypothesis)?;
+        let mean = hypothesis.written.wraps.then(|| rendered.mean());
+        let seen = self.seen(&hypothesis.written, mean.as_deref());
+        if let Some(added) = hypothesis.added {
+            (rendered, hypothesis.note) = with_added(&seen, rendered, added);
+        }
+        let fit = Fit::new(&seen, &hypothesis.written, &rendered);
+        Ok(Compared { hypothesis, rendered, fit })
+    }
+
+    fn rendered(&mut self, of: &Hypothesis) -> Result<Rendered> {
+        let is_same = |(known, _): &&(Hypothesis, Rendered)| known.stage.id == of.stage.id && known.is_traced_as(of);
+        if let Some((_, rendered)) = self.known.iter().find(is_same) {
+            return Ok(rendered.clone());
+        }
+        let rendered = self.traced(of)?;
+        if of.numbers.is_empty() && of.rows.iter().all(|row| row.is_right) {
+            self.known.push((of.clone(), rendered.clone()));
+        }
+        Ok(rendered)
+    }
+
+    fn traced(&mut self, of: &Hypothesis) -> Result<Rendered> {
+        if of.steps.is_none() || of.is_exact() {
+            return self.studio.render(of, 1, FINE[0], None);
+        }
+        let mut fast = of.fast();
+        let whole = self.studio.render(&fast, 1, FINE[0], None)?;
+        // The plain tracer is slow: it renders only what its steps change.
+        let factor = factor(of.size());
+        fast.plain();
+        let [own, book] = [of, &fast].map(|it| self.studio.render(it, factor, 4 * SMALL[1], None).map(|it| it.halves));
+        let (own, book) = (own?, book?);
+        let size = of.size().map(|side| side as usize);
+        let is_changed = |pixel: usize| (0..2).any(|half| own[half][pixel] != book[half][pixel]);
+        let changed: Vec<bool> = (0..own[0].len()).map(is_changed).collect();
+        let small = size.map(|side| side / factor as usize);
+        let mut mask = enlarged(&grown(&changed, small), size, factor as usize);
+        if let Some(ignored) = &self.mine.ignored {
+            mask.iter_mut().zip(ignored.iter()).for_each(|(is_traced, is_ignored)| *is_traced &= !is_ignored);
+        }
+        Ok(whole.under(&self.studio.render(of, 1, FINE[1], Some(&mask))?))
+    }
+
+    /// A hypothesis in full size, with the levels of bytes that fit best.
+    fn with_levels(&mut self, hypothesis: &Hypothesis) -> Result<Compared> {
+        let mut best = self.compared(hypothesis)?;
+        if best.fit.excess > FAR {
+            return Ok(best);
+        }
+        for mistake in applying_to(&hypothesis.recipe).filter(|it| it.is_right) {
+            for other in mistake.pictures(hypothesis).iter().filter(|it| is_written_otherwise(it, hypothesis)) {
+                if other.written.curve != hypothesis.written.curve || best.fit.is_enough() {
+                    continue;
+                }
+                let seen = self.seen(&other.written, None);
+                let fit = Fit::new(&seen, &other.written, &best.rendered);
+                if fit.score < best.fit.score {
+                    best = Compared { hypothesis: other.clone(), rendered: best.rendered, fit };
+                }
+            }
+        }
+        Ok(best)
+    }
+
+    /// Right pictures of these stages, and pictures that are only written otherwise, the most similar first.
+    fn ranked(&mut self, stages: &[&'static Stage]) -> Result<Vec<(f64, Hypothesis)>> {
+            (self.say)("comparing with all sections and editions".to_owned());
+        let size = [self.mine.width, self.mine.height];
+        let factor = factor(size);
+        let mut known: Vec<(Written, Vec<[f64; 3]>)> = Vec::new();
         let mut ranked = Vec::new();
-        let edges = edges(&self.right.expected, [width, height]);
-        // Where everything is blurred, or cheap to trace, more than the edges are compared.
-        let is_masked = recipe.rules.has_bounces() && recipe.camera.defocus_angle_degrees == 0.0;
-        for hypothesis in all_mistakes(&recipe) {
-            let is_only_scaled = hypothesis.is_right_before_writing(&recipe)
-                && Written { levels: 256.0, rounds: false, ..hypothesis.written } == right.written;
-            if is_only_scaled {
-                fine.push((hypothesis, None));
-                continue;
-            }
-            // The ignored pixels are those of a file in the right order.
-            if self.mine.ignored.is_some() && hypothesis.written.order.exchanges_sides() {
-                continue;
-            }
-            if hypothesis.is_fine {
-                fine.push((hypothesis, is_masked.then(|| edges.clone())));
-                continue;
-            }
-            let is_right = hypothesis.is_right_before_writing(&recipe);
-            let rendered = match is_right {
-                true => small_right.clone(),
-                false => self.studio.halves(&hypothesis, factor, SMALL, None)?,
-            };
-            let is_alike = hypothesis.written == right.written;
-            if is_right && !is_alike && self.is_as_right(&hypothesis.written) {
-                continue;
-            }
-            let seen =
-                if is_alike { small_seen.clone() } else { self.seen(&hypothesis.written).reduced(factor) };
-            let base = if hypothesis.steps.is_some() { &plain_right } else { &small_right };
-            let mask =
-                (!is_right && recipe.rules.antialiasing && !hypothesis.written.order.exchanges_sides())
-                    .then(|| changed(&rendered, base, [width, height], factor as usize, &edges));
-            let (hypothesis, rendered, misfit) = rough(&seen, hypothesis, rendered);
-            let is_plain = hypothesis.steps.is_some();
-            let is_leading = is_alike && {
-                let to = if is_plain { small_right.changed(&plain_right, &rendered) } else { rendered };
-                rest.slopes(&to, false)[0].is_beyond(LEADS_ROUGHLY)
-            };
-            if misfit < HOPELESS * right_misfit || is_leading || (is_right && self.right.is_noise) {
-                ranked.push((misfit, is_leading, hypothesis, mask));
+        for stage in stages {
+            let right = Hypothesis::right(stage, common(stage), size);
+            let editions = applying_to(&right.recipe).filter(|it| it.is_right).flat_map(|it| it.pictures(&right));
+            let editions: Vec<Hypothesis> = editions.filter(|it| !it.is_traced_as(&right)).collect();
+            for base in [right].into_iter().chain(editions) {
+                let mut tiny = |of: &Hypothesis| small(&mut self.studio, of, factor, SMALL[usize::from(of.steps.is_some())]);
+                let others = applying_to(&base.recipe).flat_map(|it| it.pictures(&base));
+                let is_other = |it: &Hypothesis| {
+                    it.written.levels == base.written.levels && it.added.is_none()
+                        && (it.is_traced_as(&base) || it.written.order.exchanges_sides())
+                };
+                let others: Vec<Hypothesis> = others.filter(is_other).collect();
+                let rendered = tiny(&base)?;
+                let exchanged = match others.iter().find(|it| it.written.order.exchanges_sides()) {
+                    Some(other) if size[0] != size[1] && base.rows.is_empty() => Some(tiny(other)?),
+                    _ => None,
+                };
+                for hypothesis in [base].into_iter().chain(others) {
+                    let written = hypothesis.written;
+                    let of = if written.order.exchanges_sides() { exchanged.as_ref() } else { Some(&rendered) };
+                    let Some(rendered) = of else { continue };
+                    let place = known.iter().position(|(known, _)| *known == written).unwrap_or_else(|| {
+                        let seen = self.seen(&written, None);
+                        known.push((written, reduced(&seen.values, seen.size[0] as usize, factor as usize)));
+                        known.len() - 1
+                    });
+                    // What holds the same values is not written otherwise.
+                    let is_same = |(other, values): &(Written, Vec<[f64; 3]>)| {
+                        *other != written && other.curve == written.curve && !written.wraps && is_equal(values, &known[place].1)
+                    };
+                    if hypothesis.is_right() || !known[..place].iter().any(is_same) {
+                        ranked.push((rough(&known[place].1, rendered, written.linear(255, 0, 1)[0]), hypothesis));
+                    }
+                }
             }
         }
-        ranked.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
-        let least = ranked.first().map_or(right_misfit, |(misfit, ..)| misfit.min(right_misfit));
-        let is_far = |misfit: f64| misfit > FAR * least.max(0.0) + NEARLY;
-        // Far from the right picture, slopes and edges do not matter.
-        if is_far(right_misfit) {
-            ranked.retain(|(misfit, ..)| !is_far(*misfit));
-            fine.retain(|(hypothesis, _)| !hypothesis.is_fine);
-        } else {
-            ranked.retain(|(misfit, is_leading, ..)| *is_leading || !is_far(*misfit));
-        }
-        ranked.truncate(REFINED);
-        let ranked = ranked.into_iter().map(|(.., hypothesis, mask)| (hypothesis, mask));
-        Ok(ranked.chain(fine).collect())
+        // If stages have equal pictures, prefer what differs less from the book, and then the closer width.
+        let bin = |misfit: &f64| (misfit.max(0.0).sqrt() * 500.0) as u64;
+        let key = |it: &Hypothesis| (it.rows.len(), it.stage.setup.width.abs_diff(size[0]));
+        ranked.sort_by(|(a, it), (b, other)| bin(a).cmp(&bin(b)).then(key(it).cmp(&key(other))));
+        Ok(ranked)
     }
 }
 
 /// The mistake whose picture depends on the random numbers.
 const SHARED: &str = "same-seed";
 
-/// Whether a candidate leaves only noise, and nothing leads from it towards the reader's picture. `recipe` is that of the
-/// right picture.
-fn fits(candidates: &[Candidate], index: usize, recipe: &Recipe) -> bool {
-    let Candidate { found, seen } = &candidates[index];
-    if !found.is_noise {
-        return false;
-    }
-    let own = &found.hypothesis;
-    let rest = Rest::new(seen, &found.rendered);
-    let leads = |to: &Rendered, at: f64| {
-        let slope = rest.slopes(to, false)[0];
-        slope.is_beyond(Slope { at, ..LEADS }) || slope.is_beyond(LEADS_FAR)
-    };
-    // A part of the picture may be shifted or blurred alone.
-    let leads_somewhere = |to: &Rendered, at: f64| {
-        let slopes = rest.slopes(to, true);
-        slopes[0].is_beyond(Slope { at, ..LEADS })
-            || slopes[1..].iter().any(|part| part.is_beyond(Slope { at: 1.5 * at, deviations: 6.0 }))
-    };
-    if own.recipe.rules.antialiasing {
-        let width = seen.size[0] as usize;
-        let sides = [[1, 0], [-1, 0], [0, 1], [0, -1]];
-        let changed = |change: &dyn Fn(f64, Neighbour) -> f64| {
-            found.rendered.map(|half| neighbours(half, width, change))
-        };
-        let moved = |by: [isize; 2]| changed(&|at, of| at + 0.5 * (of(by) - of(by.map(|x| -x))));
-        let blurred =
-            |sign: f64| changed(&|at, of| at + sign * sides.map(|side| of(side) - at).iter().sum::<f64>());
-        if sides.into_iter().any(|side| leads_somewhere(&moved(side), SHIFTED))
-            || [1.0, -1.0].into_iter().any(|sign| leads_somewhere(&blurred(sign), BLURRED))
-        {
-            return false;
-        }
-    }
-    candidates.iter().enumerate().filter(|(other, _)| *other != index).all(|(_, other)| {
-        let theirs = &other.found.hypothesis;
-        if own.mistake.map(|mistake| mistake.id) == theirs.mistake.map(|mistake| mistake.id) {
-            return true;
-        }
-        // A file that is written differently may contain another mistake, too.
-        let is_besides = own.is_right_before_writing(recipe)
-            && own.fit.is_none()
-            && theirs.written == Written::right(recipe);
-        let is_comparable = own.written.order == theirs.written.order
-            && own.written.channels == theirs.written.channels
-            && own.written.curve == theirs.written.curve;
-        let to = match is_comparable {
-            true => as_read(&other.found.rendered, &theirs.written, &own.written, seen.size),
-            false if is_besides && own.written != theirs.written => other.found.rendered.clone(),
-            false => return true,
-        };
-        let is_in_bytes = own.written != theirs.written
-            && own.steps.is_none()
-            && theirs.is_right_before_writing(&own.recipe);
-        !leads(&to, if is_in_bytes { LEADS_IN_BYTES } else { LEADS.at })
-    })
+/// Whether both say the same to the reader.
+fn is_same(a: &Hypothesis, b: &Hypothesis) -> bool {
+    let id = |it: &Hypothesis| it.named().map(|named| named.id);
+    let numbers = |it: &Hypothesis| it.numbers.iter().map(|number| number.what).collect::<Vec<_>>();
+    id(a) == id(b) && numbers(a) == numbers(b)
 }
 
-/// The linear values of a picture that was written with one encoding and is read with another of the same curve.
-fn as_read(rendered: &Rendered, from: &Written, to: &Written, [width, height]: [u32; 2]) -> Rendered {
-    if from == to {
-        return rendered.clone();
+/// The right pictures on which mistakes are tried: of the nearest sections that of the book, and that of an edition if it is
+/// nearer.
+fn bases(ranked: &[(f64, Hypothesis)], sections: usize) -> Vec<Hypothesis> {
+    /// How much nearer a picture must be that differs more from the book.
+    const NEARER: f64 = 0.6;
+    let rights: Vec<&(f64, Hypothesis)> = ranked.iter().filter(|(_, it)| it.is_right()).collect();
+    let mut bases: Vec<Hypothesis> = Vec::new();
+    let mut stages: Vec<&str> = Vec::new();
+    for (_, nearest) in &rights {
+        let id = nearest.stage.id;
+        if stages.contains(&id) || stages.len() >= sections {
+            continue;
+        }
+        stages.push(id);
+        let of_stage = || rights.iter().filter(|(_, it)| it.stage.id == id);
+        let is_simple = |it: &Hypothesis| it.rows.iter().all(|row| row.id.starts_with("edition"));
+        let book = of_stage().find(|(_, it)| it.rows.is_empty());
+        let edition = of_stage().find(|(_, it)| !it.rows.is_empty() && is_simple(it));
+        let other = of_stage().find(|(_, it)| !is_simple(it));
+        let mut limit = f64::INFINITY;
+        let mut own = Vec::new();
+        for (misfit, it) in [book, edition, other].into_iter().flatten() {
+            if *misfit < NEARER * limit || own.len() < 2 && is_simple(it) && stages.len() == 1 {
+                own.insert(if *misfit < NEARER * limit { 0 } else { own.len() }, it.clone());
+                limit = limit.min(*misfit);
+            }
+        }
+        bases.extend(own);
     }
-    let [added, taken] = [from, to].map(|written| if written.rounds { 0.5 } else { 0.0 });
-    rendered.map(|half| {
-        let pixels = half.iter().enumerate();
-        let value = |row: usize, x: f64| {
-            let byte = from.levels * from.curve.displayed(x.max(0.0), row, height as usize) + added - taken;
-            to.curve.linear((byte / to.levels).max(0.0), row, height as usize)
-        };
-        pixels.map(|(index, pixel)| pixel.map(|x| value(index / width as usize, x))).collect()
-    })
+    bases
 }
 
-/// The value beside a pixel, at this offset.
-type Neighbour<'a> = &'a dyn Fn([isize; 2]) -> f64;
+/// Whether two small pictures are equal.
+fn is_equal(a: &[[f64; 3]], b: &[[f64; 3]]) -> bool {
+    let is_same = |(a, b): (&f64, &f64)| a == b || a.is_nan() && b.is_nan();
+    a.len() == b.len() && a.as_flattened().iter().zip(b.as_flattened()).all(is_same)
+}
 
-/// Maps each value and its neighbours; the border is unchanged.
-fn neighbours(pixels: &[[f64; 3]], width: usize, change: impl Fn(f64, Neighbour) -> f64) -> Vec<[f64; 3]> {
-    let height = pixels.len() / width;
-    let at = |index: usize| {
-        let (x, y) = (index % width, index / width);
-        if x == 0 || y == 0 || x + 1 == width || y + 1 == height {
-            return pixels[index];
+/// Whether only the bytes of two pictures differ.
+fn is_written_otherwise(it: &Hypothesis, base: &Hypothesis) -> bool {
+    it.is_traced_as(base) && it.added.is_none()
+}
+
+/// Mean squared difference of small pictures in displayed values, without the noise of ours.
+fn rough(seen: &[[f64; 3]], rendered: &Rendered, most: f64) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    let halves = rendered.halves.each_ref().map(|half| half.as_flattened());
+    for (index, value) in seen.as_flattened().iter().enumerate() {
+        let square = (value - halves[0][index].min(most)) * (value - halves[1][index].min(most)) / (4.0 * value.max(0.02));
+        if square.is_finite() {
+            sum += square;
+            count += 1.0;
         }
-        [0, 1, 2].map(|channel| {
-            let of =
-                |[dx, dy]: [isize; 2]| pixels[index.wrapping_add_signed(dy * width as isize + dx)][channel];
-            change(pixels[index][channel], &of)
-        })
+    }
+    if 4.0 * count > seen.len() as f64 { sum / count } else { f64::INFINITY }
+}
+
+/// The picture with what fits best added, and a remark.
+pub fn with_added(seen: &Seen, rendered: Rendered, added: Added) -> (Rendered, Option<String>) {
+    let from = |index: usize| match added {
+        Added::Gain => index,
+        Added::Carry => index.saturating_sub(1),
     };
-    (0..pixels.len()).map(at).collect()
+    let right = rendered.mean();
+    let (mut product, mut square) = (0.0, 1e-9);
+    for (index, (seen, expected)) in seen.values.iter().zip(&right).enumerate() {
+        for channel in 0..3 {
+            let (direction, value) = (right[from(index)][channel], seen[channel]);
+            // A value at the top of its range is only a lower bound.
+            if value.is_finite() && value < 0.98 {
+                let weight = 1.0 / (0.01 + expected[channel]);
+                product += weight * direction * (value - expected[channel]);
+                square += weight * direction * direction;
+            }
+        }
+    }
+    let times = (product / square).max(match added {
+        Added::Gain => -0.99,
+        Added::Carry => 0.0,
+    });
+    let note = match added {
+        Added::Gain => format!("your picture is {:.3} times as bright as ours, in linear values", 1.0 + times),
+        Added::Carry => format!("each pixel holds about 1/{:.0} of the one before", 1.0 / times),
+    };
+    (rendered.plus(times, from), Some(note))
 }
 
 /// The factor by which the first pictures are smaller: a common divisor of both sides, if a suitable one exists.
-fn factor([width, height]: [u32; 2], antialiasing: bool) -> u32 {
-    if !antialiasing {
-        return 1;
-    }
+fn factor([width, height]: [u32; 2]) -> u32 {
     let wanted = (width / SMALL_WIDTH).max(1);
     let divides = |factor: &u32| width.is_multiple_of(*factor) && height.is_multiple_of(*factor);
     (wanted.div_ceil(2)..=2 * wanted)
         .filter(divides)
         .min_by_key(|factor| factor.abs_diff(wanted))
         .unwrap_or(wanted)
-}
-
-/// Pixels at an edge.
-fn edges(expected: &[[f64; 3]], [width, height]: [usize; 2]) -> Vec<bool> {
-    let is_edge = |index: usize| {
-        let (x, y) = (index % width, index / width);
-        if x == 0 || y == 0 || x + 1 == width || y + 1 == height {
-            return false;
-        }
-        // The Sobel operator.
-        (0..3).any(|channel| {
-            let step = |by: usize, along: usize| {
-                let of = |at: usize| expected[at + by][channel] - expected[at - by][channel];
-                (of(index - along) + 2.0 * of(index) + of(index + along)).abs() / 4.0
-            };
-            step(1, width).max(step(width, 1)) >= EDGE
-        })
-    };
-    let edges: Vec<bool> = (0..expected.len()).map(is_edge).collect();
-    // A pixel beside an edge changes, too.
-    grown(&edges, [width, height])
-}
-
-/// Where the small picture of a mistake differs from the right one, and at edges, in full size.
-fn changed(small: &Rendered, right: &Rendered, size: [usize; 2], factor: usize, edges: &[bool]) -> Vec<bool> {
-    let (small, right) = (small.mean(), right.mean());
-    let pixels = small.iter().zip(&right);
-    let is_changed = |(a, b): (&[f64; 3], &[f64; 3])| a.iter().zip(b).any(|(a, b)| (a - b).abs() > CHANGED);
-    let changed: Vec<bool> = pixels.map(is_changed).collect();
-    let near = enlarged(&grown(&changed, size.map(|side| side / factor)), size, factor);
-    near.iter().zip(edges).map(|(is_near, is_edge)| *is_near || *is_edge).collect()
-}
-
-fn all_mistakes(recipe: &Recipe) -> Vec<Hypothesis> {
-    let is_compared = |mistake: &&Mistake| mistake.id != SHARED;
-    applying_to(recipe).filter(is_compared).flat_map(|mistake| mistake.pictures(recipe)).collect()
-}
-
-/// The stages that the picture resembles most, rendered correctly or written wrongly, or, if `is_thorough`, with any
-/// mistake.
-fn candidates(mine: &Mine, is_thorough: bool, mut say: impl FnMut(String)) -> Result<Vec<&'static Stage>> {
-    let factor = factor([mine.width, mine.height], true);
-    let mut ranked = Vec::new();
-    let factor = if is_thorough { 2 * factor } else { factor };
-    let what = if is_thorough { "the mistakes of all stages" } else { "all stages" };
-    say(format!("comparing with {what}"));
-    let mut known: Vec<(Written, Seen)> = Vec::new();
-    for stage in Stage::ALL.iter().filter(|stage| !stage.setup.has_random_spheres) {
-        let mut studio = Studio::new(stage.recipe(), [mine.width, mine.height])?;
-        let right = Hypothesis::right(studio.recipe());
-        let recipe = &right.recipe.clone();
-        // Without antialiasing, a small render has coarser edges than a reduced one.
-        let is_exact = !recipe.rules.antialiasing;
-        let mut rendered = |hypothesis: &Hypothesis| -> Result<Rendered> {
-            if is_exact {
-                let whole = studio.halves(hypothesis, 1, TINY, None)?;
-                return Ok(whole.reduced(hypothesis.size()[0] as usize, factor as usize));
-            }
-            studio.halves(hypothesis, factor, TINY, None)
-        };
-        let linear = rendered(&right)?;
-        let columns = (mine.width / factor).max(1) as usize;
-        let mean = linear.mean();
-        let expected = |pixel: usize, channel: usize| {
-            let (x, y) = (pixel % mine.width as usize, pixel / mine.width as usize);
-            let place = y / factor as usize * columns + (x / factor as usize).min(columns - 1);
-            mean.get(place).map_or(1.0, |pixel| pixel[channel])
-        };
-        let is_tried = |picture: &Hypothesis| {
-            let is_other_right = picture.mistake.is_some_and(|mistake| mistake.is_right);
-            !picture.is_fine && (is_thorough || is_other_right || picture.is_right_before_writing(recipe))
-        };
-        let mistakes = all_mistakes(recipe).into_iter().filter(is_tried);
-        let mut least = f64::INFINITY;
-        for hypothesis in std::iter::once(right).chain(mistakes) {
-            let written = hypothesis.written;
-            let rendered = match hypothesis.is_right_before_writing(recipe) {
-                true => linear.clone(),
-                false => rendered(&hypothesis)?,
-            };
-            // What wrapped around is judged by the stage's picture.
-            known.retain(|(known, _)| !known.wraps);
-            let place = known.iter().position(|(known, _)| *known == written).unwrap_or_else(|| {
-                known.push((written, Seen::of(mine, &written, expected).reduced(factor)));
-                known.len() - 1
-            });
-            let seen = &known[place].1;
-            let (_, _, misfit) = rough(seen, hypothesis, rendered);
-            least = least.min(misfit);
-        }
-        ranked.push((least, stage));
-    }
-    // If stages have equal pictures, prefer the one with the closer width.
-    let distance = |stage: &Stage| stage.setup.width.abs_diff(mine.width);
-    ranked
-        .sort_by(|(a, stage_a), (b, stage_b)| a.total_cmp(b).then(distance(stage_a).cmp(&distance(stage_b))));
-    let difference = |(misfit, _): &(f64, _)| misfit.max(0.0).sqrt();
-    if ranked.first().is_some_and(|nearest| difference(nearest) < FOUND) {
-        let limit = 1.5 * difference(&ranked[0]) + NEAR;
-        ranked.retain(|stage| difference(stage) < limit);
-        let mut near: Vec<_> = ranked.into_iter().map(|(_, stage)| stage).take(CANDIDATES).collect();
-        // What 9.3 shows as a fault is right in the sections before it.
-        if near.iter().any(|stage| stage.setup.rules.surface == SurfaceRule::Acne) {
-            let before = Stage::ALL.iter().filter(|stage| matches!(stage.section, "9.1" | "9.2"));
-            let missing: Vec<_> = before.filter(|stage| !near.contains(stage)).collect();
-            near.extend(missing);
-        }
-        return Ok(near);
-    }
-    // If no mistake of any stage looks like the picture, one stage is enough to say where it differs.
-    Ok(ranked.into_iter().map(|(_, stage)| stage).take(usize::from(is_thorough)).collect())
 }

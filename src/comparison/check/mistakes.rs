@@ -1,8 +1,8 @@
 //! The table of common mistakes of the book's readers, and of other ways to be right: explanation, where each can show,
 //! and how to render it.
 
-use super::hypothesis::{Fit, Hypothesis, Mistake};
-use super::tracer::{Random, on_circle, reflectance, schlick};
+use super::hypothesis::{Added, Hypothesis, Mistake};
+use super::tracer::{Random, on_circle, reflectance, schlick, surrounds};
 use super::written::Order;
 use crate::job::output::Encoding;
 use crate::job::recipe::Recipe;
@@ -49,33 +49,51 @@ mistakes! {
         "nothing is wrong if you have read on; section 9.5 adds the square root",
         |recipe| recipe.rules.transfer == Transfer::Linear,
         RIGHT, |it| it.written.curve = Encoding::Book(Transfer::Gamma2);
+    "gamma-of-samples", "9.5", "the square root is taken of each sample, not of the pixel's mean",
+        "take the square root in `write_color`, of the mean",
+        |recipe| has_gamma(recipe) && recipe.rules.antialiasing, WRONG, |it| {
+            it.written.curve = Encoding::Book(Transfer::Linear);
+            it.plain().sample = |light| DVec3::from(light.to_array().map(f64::sqrt));
+        };
     "gamma-twice", "9.5", "gamma is applied twice",
         "take the square root once: either in `write_color` or in your picture library, which may write sRGB from linear values",
         has_gamma, WRONG, |it| it.written.curve = Encoding::Gamma(4.0);
     "gamma-2.2", "9.5", "the curve is gamma 2.2, not the square root",
-        BRIGHTER, has_gamma, WRONG, |it| it.written.curve = Encoding::Gamma(2.2);
+        BRIGHTER, has_gamma, RIGHT, |it| it.written.curve = Encoding::Gamma(2.2);
     "gamma-srgb", "9.5", "the curve is that of sRGB, not the square root",
-        BRIGHTER, has_gamma, WRONG, |it| it.written.curve = Encoding::Srgb;
+        BRIGHTER, has_gamma, RIGHT, |it| it.written.curve = Encoding::Srgb;
     "wraps-to-0", "8.2", "the brightest values become 0",
         "clamp before the conversion: `int(256 * clamp(x, 0, 0.999))`; 256 does not fit into a byte and becomes 0",
         always, WRONG, |it| it.written.wraps = true;
     "scale-255", "8.2", "channels are multiplied by 255 and truncated",
-        "use `int(256 * clamp(x, 0, 0.999))`, or 255.999: with 255, only a value of exactly 1 becomes 255",
-        always, WRONG, |it| it.written.levels = 255.0;
+        "nothing is wrong; with `int(256 * clamp(x, 0, 0.999))`, all 256 values are as likely",
+        always, RIGHT, |it| it.written.levels = 255.0;
     "no-antialiasing", "8.2", "all samples pass through the centre of the pixel",
         "add a random offset within -0.5..0.5 to i and j for each sample", has_antialiasing, WRONG, |it| fine(it).recipe.rules.antialiasing = false;
     "half-pixel-up", "4.2", "the picture is shifted by half a pixel, down and to the right",
         "let `pixel00_loc` be the centre of the first pixel: the upper left corner plus `0.5 * (pixel_delta_u + pixel_delta_v)`",
-        has_rays, WRONG, |it| fine(it).plain().first_pixel = [0.0; 2];
+        has_rays, WRONG, |it| shift(it, [-0.5; 2]);
     "half-pixel-down", "8.2", "the picture is shifted by half a pixel, up and to the left",
         "draw the offsets of a sample from -0.5..0.5, not from 0..1: `pixel00_loc` is already the pixel's centre",
-        has_rays, WRONG, |it| fine(it).plain().first_pixel = [1.0; 2];
+        has_rays, WRONG, |it| shift(it, [0.5; 2]);
     "width-less-one", "4.2", "pixels are spaced by the width less one",
         "divide the viewport by `image_width` and `image_height`; older editions had `image_width - 1`",
-        has_rays, WRONG, |it| fine(it).plain().spacings = |pixels| pixels - 1.0;
+        has_rays, WRONG, |it| less_one(it, [0.5; 2]);
     "integer-aspect", "4.2", "the aspect ratio is a whole number",
         "divide as floating-point numbers: `double(image_width) / image_height`, and `16.0 / 9.0`",
-        has_rays, WRONG, |it| it.plain().aspect = |width, height| (width / height).max(1).into();
+        has_rays, WRONG, |it| {
+            let [width, height] = it.size();
+            it.viewport.scale[0] *= f64::from((width / height).max(1)) / (f64::from(width) / f64::from(height));
+        };
+    "integer-width", "4.2", "the width of the viewport is a whole number",
+        "store it as a floating-point number: `double viewport_width = ...`",
+        has_rays, WRONG, |it| whole_width(it, 1.0), |it| whole_width(it, 10.0);
+    "corner-without-aspect", "4.2", "the corner of the viewport does not follow from its width",
+        "`viewport_upper_left = camera_center - vec3(0, 0, focal_length) - viewport_u/2 - viewport_v/2`",
+        has_rays, WRONG, |it| {
+            let [width, height] = it.size().map(f64::from);
+            it.viewport.shift[0] += (1.0 - height / width) / 2.0;
+        };
     "vfov-radians", "12.1", "the field of view is used as radians",
         "convert it first: `theta = degrees_to_radians(vfov)`",
         has_rays, WRONG, |it| field_of_view(it, |half| half.to_degrees().tan());
@@ -92,7 +110,10 @@ mistakes! {
     "last-hit-wins", "6.5", "the last sphere in the list hides nearer ones",
         "pass `interval(ray_t.min, closest_so_far)` to `hit`, and set `closest_so_far = temp_rec.t` after each hit",
         |recipe| has_rays(recipe) && recipe.scene.spheres.len() > 1,
-        WRONG, |it| it.plain().t_max = |_| f64::INFINITY;
+        WRONG, |it| it.plain().t_max = |_| f64::INFINITY, |it| {
+            Arc::make_mut(&mut it.recipe.scene).spheres.reverse();
+            it.plain().t_max = |_| f64::INFINITY;
+        };
     "zero-t-min", "9.3", "rays hit the surface that they start on (shadow acne)",
         "let hits begin at 0.001: `world.hit(r, interval(0.001, infinity), rec)`",
         |recipe| has_bounces(recipe) && recipe.rules.surface != SurfaceRule::Acne && recipe.rules.diffuse != Diffuse::Hemisphere,
@@ -129,7 +150,7 @@ mistakes! {
         has_fuzz, WRONG, |it| materials(it, no_fuzz);
     "fuzz-unnormalised", "10.6", "the reflected direction is not normalised before fuzz is added",
         "normalise first: `reflected = unit_vector(reflected) + (fuzz * random_unit_vector())`",
-        has_fuzz, WRONG, |it| it.plain().before_fuzz = |direction| direction;
+        has_fuzz, WRONG, |it| it.plain().before_fuzz = |reflected, _| reflected;
     "refract-unnormalised", "11.2", "the direction is not normalised before it is refracted or reflected",
         "use `unit_direction = unit_vector(r_in.direction())` for `cos_theta`, `refract` and `reflect`",
         has_glass, WRONG, |it| it.plain().before_glass = |direction| direction;
@@ -158,6 +179,13 @@ mistakes! {
     "hollow-missing", "11.5", "the sphere of air inside the glass sphere is missing",
         "add a sphere of radius 0.4 at the same place, of `dielectric(1.00 / 1.50)`",
         has_bubble, WRONG, |it| change_bubble(it, |scene, bubble| _ = scene.spheres.remove(bubble));
+    "inner-only", "11.5", "the glass sphere around the sphere of air is missing",
+        "keep the outer sphere, of radius 0.5 and `dielectric(1.50)`, and add the inner one",
+        has_bubble, WRONG, |it| change_bubble(it, |scene, bubble| {
+            let center = scene.spheres[bubble].center;
+            let radius = scene.spheres[bubble].radius;
+            scene.spheres.retain(|sphere| sphere.center != center || sphere.radius == radius);
+        });
     "hollow-index", "11.5", "the sphere inside the glass sphere is glass, too",
         "the inner sphere is air in glass: `dielectric(1.00 / 1.50)`",
         has_bubble, WRONG,
@@ -174,6 +202,15 @@ mistakes! {
     "focus-distance-one", "13.2", "the plane in focus is 1 away",
         "use `focus_dist` for the viewport: `viewport_height = 2 * h * focus_dist`, and `center - focus_dist * w`",
         has_lens, WRONG, |it| it.recipe.camera.focus_distance = Some(1.0);
+    "viewport-without-focus", "13.2", "the viewport's size lacks the focus distance",
+        "`viewport_height = 2 * h * focus_dist`", has_lens, WRONG, |it| {
+            let distance = it.recipe.camera.effective_focus_distance();
+            it.viewport.scale = it.viewport.scale.map(|scale| scale / distance);
+        }, |it| {
+            let camera = &mut it.recipe.camera;
+            camera.defocus_angle_degrees = 2.0 * camera.lens_radius().atan().to_degrees();
+            camera.focus_distance = Some(1.0);
+        };
     "same-seed", "9.1", "every pixel uses the same random numbers",
         "seed the generator once, before the loops, not for each pixel",
         |recipe| recipe.rules.antialiasing && has_bounces(recipe),
@@ -183,10 +220,6 @@ mistakes! {
     "rotated", "12.2", "the picture is turned by 180 degrees",
         "with `w = unit_vector(look_from - look_at)`: `u = unit_vector(cross(vup, w))` and `v = cross(w, u)`, in this order",
         always, WRONG, |it| it.written.order = Order::Rotated;
-    "moved", "2.2", "the picture is moved by a whole pixel",
-        "let i run from 0 to `image_width - 1` and j from 0 to `image_height - 1`, and let `pixel00_loc` be the first pixel's centre",
-        always, WRONG, |it| moved(it, 1, 0), |it| moved(it, -1, 0), |it| moved(it, 0, 1), |it| moved(it, 0, -1),
-        |it| moved(it, 1, 1), |it| moved(it, -1, -1), |it| moved(it, 1, -1), |it| moved(it, -1, 1);
     "columns-first", "2.2", "the pixels are written column by column",
         "let the outer loop count rows and the inner one columns: for j, then for i",
         always, WRONG, |it| it.written.order = Order::Columns, |it| exchange(it, Order::Transposed);
@@ -212,18 +245,13 @@ mistakes! {
         "nothing is wrong; since edition 4, pixels are spaced by the whole width, and rays pass through their centres",
         has_rays, RIGHT, edition_3_camera, |it| {
             if !it.recipe.rules.antialiasing {
-                fine(it).plain().first_pixel = [0.0, 1.0];
+                shift(it, [-0.5, 0.5]);
             }
         };
     "edition-diffuse", "9.1", "matte surfaces and the camera are those of edition 3",
         "nothing is wrong; edition 4 begins with the hemisphere, and edition 3 with points in the unit sphere",
         has_one_material, RIGHT,
-        |it| edition_3_diffuse(it, 0.0, Transfer::Linear), |it| edition_3_diffuse(it, 0.0, Transfer::Gamma2),
-        |it| edition_3_diffuse(it, 0.001, Transfer::Gamma2),
-        |it| {
-            edition_3_camera(it);
-            it.written.curve = Encoding::Book(Transfer::Gamma2);
-        };
+        |it| edition_3_diffuse(it, 0.0), |it| edition_3_diffuse(it, 0.001);
     "edition-scene", "10.5", "scene and camera are those of an older edition",
         "nothing is wrong; edition 4 changed the colours, positions and views", has_metal, RIGHT,
         |it| older_scene(it, 0.4), |it| {
@@ -248,46 +276,37 @@ mistakes! {
         |it| grey(it, 0.1), |it| grey(it, 0.3), |it| grey(it, 0.7), |it| grey(it, 0.9);
     "brightness", "8.2", "the brightness is off by a constant factor",
         "divide the sum of a pixel's samples by their number, exactly once, before the square root",
-        has_rays, WRONG, |it| it.fit = Some(Fit::Gain);
+        has_rays, WRONG, |it| it.added = Some(Added::Gain);
     "sum-kept", "8.2", "the sum of a pixel begins with the colour of the one before",
         "set `pixel_color` to `color(0, 0, 0)` inside the loop over the pixels",
-        has_antialiasing, WRONG, |it| it.fit = Some(Fit::Carry);
+        has_antialiasing, WRONG, |it| it.added = Some(Added::Carry);
     "wide-filter", "8.2", "the samples of a pixel are spread too widely, so the picture is blurred",
         "draw the offsets from -0.5..0.5: `vec3(random_double() - 0.5, random_double() - 0.5, 0)`",
         has_antialiasing, WRONG, |it| fine(it).plain().filter = 3.0,
         |it| fine(it).plain().filter = 4.0;
-    "fixed-aspect", "4.2", "the aspect ratio is not that of the picture",
-        "`viewport_width = viewport_height * (double(image_width) / image_height)`", has_rays, WRONG,
-        |it| it.plain().aspect = |_, _| 16.0 / 9.0, |it| it.plain().aspect = |_, _| 4.0 / 3.0,
-        |it| it.plain().aspect = |_, _| 1.0,
-        |it| it.plain().aspect = |width, height| f64::from(height) / f64::from(width);
     "backwards", "12.2", "the camera looks backwards",
         "`w = unit_vector(look_from - look_at)` points back: subtract `focus_dist * w`, do not add it",
         has_rays, WRONG, |it| look_back(it, Order::Rows), |it| look_back(it, Order::Mirrored),
         |it| look_back(it, Order::Rotated);
-    "vfov-tangent", "12.1", "the tangent is not taken of half the field of view",
-        "`h = std::tan(theta / 2)`, and `viewport_height = 2 * h * focus_dist`", has_rays, WRONG,
-        |it| field_of_view(it, |half| (2.0 * half).tan()), |it| field_of_view(it, |half| (half / 2.0).tan()),
-        |it| field_of_view(it, |half| half.tan() / 2.0), |it| field_of_view(it, |half| 2.0 * half.tan());
-    "hfov", "12.1", "the field of view is used for the width instead of the height",
-        "`viewport_height = 2 * h * focus_dist`; the width follows from it", has_rays, WRONG, |it| {
-            let [width, height] = it.size().map(f64::from);
-            let half = it.recipe.camera.vfov_degrees.to_radians() / 2.0;
-            it.recipe.camera.vfov_degrees = 2.0 * (half.tan() * height / width).atan().to_degrees();
-        };
     "sky-not-unit", "4.2", "the sky uses the direction before it is normalised",
         "`unit_direction = unit_vector(r.direction())`, and `a = 0.5 * (unit_direction.y() + 1.0)`",
-        has_rays, WRONG, |it| it.plain().sky = |direction| 0.5 * (direction.y + 1.0);
+        has_rays, WRONG, |it| it.plain().sky = |direction, _| 0.5 * (direction.y + 1.0);
     "sky-blend", "4.2", "the sky's gradient does not follow 0.5 * (y + 1)",
         "`a = 0.5 * (unit_direction.y() + 1.0)`, and `color = (1.0 - a) * white + a * blue`", has_rays, WRONG,
-        |it| it.plain().sky = |direction| direction.normalize().y,
-        |it| it.plain().sky = |direction| 0.5 * (direction.normalize().x + 1.0),
-        |it| it.plain().sky = |direction| 0.5 * (direction.normalize().z + 1.0),
-        |it| it.plain().sky = |_| 1.0, |it| it.plain().sky = |_| 0.0;
+        |it| it.plain().sky = |direction, _| direction.normalize().y,
+        |it| it.plain().sky = |direction, _| 0.5 * (direction.normalize().x + 1.0),
+        |it| it.plain().sky = |direction, _| 0.5 * (direction.normalize().z + 1.0),
+        |it| it.plain().sky = |_, _| 1.0, |it| it.plain().sky = |_, _| 0.0;
+    "sky-of-camera", "4.2", "every bounce sees the sky in the direction of the camera's ray",
+        "in `ray_color`, use the direction of the ray that has left the scene", has_bounces, WRONG,
+        |it| it.plain().sky = |_, seen| 0.5 * (seen.normalize().y + 1.0);
     "far-root", "6.2", "the farther of the two roots is used",
         "try `(h - sqrtd) / a` first, and `(h + sqrtd) / a` only if that is outside the interval", has_solids, WRONG,
         |it| it.plain().roots = |a, h, c| [(h + (h * h - a * c).sqrt()) / a; 2],
         |it| it.plain().roots = |a, h, c| [1.0, -1.0].map(|sign| (h + sign * (h * h - a * c).sqrt()) / a);
+    "root-shadowed", "6.2", "the second root is a new variable, so the hit is at the first one",
+        "assign the second root to the same variable, without `auto`, `let`, `val` or `var`", has_solids, WRONG,
+        |it| it.plain().root = |roots, interval| roots.into_iter().any(|t| surrounds(interval, t)).then_some(roots[0]);
     "near-root-only", "6.2", "only the nearer root is tried",
         "if `(h - sqrtd) / a` is outside the interval, try `(h + sqrtd) / a`", has_solids, WRONG,
         |it| it.plain().roots = |a, h, c| [(h - (h * h - a * c).sqrt()) / a; 2];
@@ -309,9 +328,6 @@ mistakes! {
     "normal-colour", "6.1", "normals are shown without being moved to 0..1",
         "return `0.5 * color(N.x() + 1, N.y() + 1, N.z() + 1)`", |recipe| recipe.rules.shading == Shading::Normals, WRONG,
         |it| it.plain().normal_colour = |normal| normal, |it| it.plain().normal_colour = DVec3::abs;
-    "ground", "6.5", "the ground has the wrong size or position",
-        "`make_shared<sphere>(point3(0, -100.5, -1), 100)`", |recipe| ground(&recipe.scene).is_some(), WRONG,
-        |it| move_ground(it, 1000.0, -1000.5), |it| move_ground(it, 100.0, -100.0), |it| move_ground(it, 100.0, -101.0);
     "vector-0-to-1", "9.1", "random vectors only have positive x, y and z",
         UNIT_VECTOR, has_bounces, WRONG, |it| vector(it, |random| random.triple().normalize()), |it| vector(it, Random::triple);
     "vector-cube", "9.1", "random vectors are drawn from a cube, so directions crowd at its corners",
@@ -323,15 +339,19 @@ mistakes! {
         |it| vector(it, |random| polar(random).zxy());
     "hemisphere-inverted", "9.1", "directions point into the surface: the test of the hemisphere is inverted",
         "return `on_unit_sphere` if `dot(on_unit_sphere, normal) > 0.0`, else `-on_unit_sphere`", has_bounces, WRONG,
-        |it| it.plain().scatter = Some(|v, normal, _| if v.dot(normal) > 0.0 { -v } else { v }),
-        |it| it.plain().scatter = Some(|v, normal, _| v - normal);
+        |it| it.plain().scatter = Some(|[v, _], normal, _| if v.dot(normal) > 0.0 { -v } else { v }),
+        |it| it.plain().scatter = Some(|[v, _], normal, _| v - normal);
     "hemisphere-missing", "9.1", "directions point everywhere, even into the surface",
         "use `random_on_hemisphere(rec.normal)`, or `rec.normal + random_unit_vector()`", has_bounces, WRONG,
-        |it| it.plain().scatter = Some(|v, _, _| v);
+        |it| it.plain().scatter = Some(|[v, _], _, _| v);
+    "hemisphere-around", "9.4", "matte surfaces scatter over a hemisphere and add the normal besides",
+        "use one of the two: `rec.normal + random_unit_vector()`", has_bounces, WRONG,
+        |it| it.plain().scatter = Some(|[v, w], normal, _| on_hemisphere(w, normal + v)),
+        |it| it.plain().scatter = Some(|[v, _], normal, _| normal + on_hemisphere(v, normal));
     "scatter-to-point", "9.4", "matte surfaces scatter from the origin of space, not from the point",
         "the ray is `ray(rec.p, rec.normal + random_unit_vector())`: a direction, not a point", has_bounces, WRONG,
-        |it| it.plain().scatter = Some(|v, normal, point| point + normal + v),
-        |it| it.plain().scatter = Some(|v, _, point| point + v);
+        |it| it.plain().scatter = Some(|[v, _], normal, point| point + normal + v),
+        |it| it.plain().scatter = Some(|[v, _], _, point| point + v);
     "no-random-vector", "9.4", "matte surfaces scatter along the normal only",
         "add a random vector: `rec.normal + random_unit_vector()`", has_bounces, WRONG,
         |it| it.plain().scatter = Some(|_, normal, _| normal);
@@ -344,18 +364,32 @@ mistakes! {
         |it| it.plain().combine = |albedo| [albedo / 2.0, DVec3::splat(0.5)];
     "reflect-once", "10.2", "the reflected direction lacks the factor 2, so it runs along the surface",
         "return `v - 2 * dot(v, n) * n`", |recipe| has_metal(recipe) || has_glass(recipe), WRONG, |it| it.plain().reflects = 1.0;
+    "reflect-plus", "10.2", "the reflected direction has a plus where the formula has a minus",
+        "return `v - 2 * dot(v, n) * n`", |recipe| has_metal(recipe) || has_glass(recipe), WRONG,
+        |it| it.plain().reflects = -2.0,
+        |it| {
+            it.plain().reflects = -2.0;
+            it.plain().before_fuzz = |reflected, incoming| reflected / incoming.length();
+        };
     "fuzz-below", "10.6", "fuzzy reflections that point below the surface are not absorbed",
         "return `(dot(scattered.direction(), rec.normal) > 0)`", has_fuzz, WRONG, |it| it.plain().absorbs_below = false;
-    "fuzz-scaled", "10.6", "fuzz has the wrong size", "`reflected = unit_vector(reflected) + (fuzz * random_unit_vector())`",
-        has_fuzz, WRONG, |it| it.plain().fuzz = |random| 2.0 * random.unit_vector(),
-        |it| it.plain().fuzz = |random| 0.5 * random.unit_vector(), |it| it.plain().fuzz = Random::triple,
+    "fuzz-cube", "10.6", "fuzz is drawn from a cube",
+        "`reflected = unit_vector(reflected) + (fuzz * random_unit_vector())`",
+        has_fuzz, WRONG, |it| it.plain().fuzz = Random::triple,
+        |it| it.plain().fuzz = |random| random.triple().normalize(),
         |it| it.plain().fuzz = |random| 2.0 * random.triple() - 1.0;
     "origin-moved", "11.2", "bounced rays start above the surface, even refracted ones",
         "start at `rec.p`, and let hits begin at 0.001", has_bounces, WRONG, |it| it.plain().lift = 0.001,
         |it| it.plain().lift = 0.01, |it| it.plain().lift = 0.1;
     "refract-outwards", "11.2", "the refracted direction leaves on the wrong side",
         "`r_out_parallel = -std::sqrt(std::fabs(1.0 - r_out_perp.length_squared())) * n`", has_glass, WRONG,
-        |it| it.plain().inwards = -1.0;
+        |it| it.plain().inwards = |square| -square.abs().sqrt();
+    "refract-nan", "11.3", "the root of a negative number: where Snell's law has no solution, the pixels are black",
+        "reflect if `ri * sin_theta > 1.0`, and take `std::fabs` below the root", has_glass, WRONG,
+        |it| {
+            it.recipe.rules.dielectric = DielectricLaws::RefractOnly;
+            it.plain().inwards = f64::sqrt;
+        };
     "glass-reflects", "11.2", "glass only reflects", "refract unless `ri * sin_theta > 1.0`", has_glass, WRONG,
         |it| {
             it.plain().swaps_glass = true;
@@ -377,11 +411,6 @@ mistakes! {
     "glass-tinted", "11.2", "glass absorbs light", "set `attenuation = color(1.0, 1.0, 1.0)` in `dielectric::scatter`", has_glass, WRONG,
         |it| it.plain().glass = DVec3::splat(0.9), |it| it.plain().glass = DVec3::splat(0.8),
         |it| it.plain().glass = DVec3::splat(0.5), |it| it.plain().glass = DVec3::new(0.5, 0.7, 1.0);
-    "lens-radius", "13.2", "the lens has the wrong radius, so the blur is too weak or too strong",
-        "`defocus_radius = focus_dist * std::tan(degrees_to_radians(defocus_angle / 2))`", has_lens, WRONG,
-        |it| lens(it, |half, focus| half.tan() / focus), |it| lens(it, |half, _| (2.0 * half).tan()),
-        |it| lens(it, |half, _| 0.5 * half.tan()), |it| lens(it, |half, _| half.to_degrees().tan().abs()),
-        |it| lens(it, |half, focus| 2.0 * half.tan() / focus);
     "lens-disk", "13.2", "the points on the lens are not spread evenly over a disk",
         "draw points in the square -1..1 until one is inside the unit disk", has_lens, WRONG,
         |it| fine(it).plain().disk = |pair| pair.map(|x| 2.0 * x - 1.0),
@@ -420,10 +449,6 @@ fn fine(picture: &mut Hypothesis) -> &mut Hypothesis {
     picture
 }
 
-fn moved(picture: &mut Hypothesis, right: i8, down: i8) {
-    picture.written.order = Order::Moved(right, down);
-}
-
 fn exchange(picture: &mut Hypothesis, order: Order) {
     let settings = &mut picture.recipe.settings;
     std::mem::swap(&mut settings.width, &mut settings.height);
@@ -438,19 +463,42 @@ fn older_gradient(picture: &mut Hypothesis, gradient: fn([f64; 2], [f64; 2]) -> 
 /// Edition 3 counts columns and rows from the lower left corner, and divides by width and height less one.
 fn edition_3_camera(picture: &mut Hypothesis) {
     let is_spread = picture.recipe.rules.antialiasing;
-    let steps = fine(picture).plain();
-    steps.spacings = |pixels| pixels - 1.0;
-    steps.first_pixel = if is_spread { [0.5, -0.5] } else { [0.0; 2] };
+    less_one(picture, if is_spread { [0.5, -0.5] } else { [0.0; 2] });
 }
 
-fn edition_3_diffuse(picture: &mut Hypothesis, t_min: f64, transfer: Transfer) {
+fn edition_3_diffuse(picture: &mut Hypothesis, t_min: f64) {
     edition_3_camera(picture);
-    picture.is_fine = false;
     let steps = picture.plain();
     steps.t_min = Some(t_min);
-    steps.scatter = Some(|vector, normal, _| normal + vector);
+    steps.scatter = Some(|[vector, _], normal, _| normal + vector);
     steps.vector = Random::in_unit_sphere;
-    picture.written.curve = Encoding::Book(transfer);
+}
+
+/// Pixels are spaced by width and height less one, and the first one's centre is here, in spacings from the corner.
+fn less_one(picture: &mut Hypothesis, first: [f64; 2]) {
+    let size = picture.size();
+    for axis in 0..2 {
+        let pixels = f64::from(size[axis]);
+        let scale = pixels / (pixels - 1.0);
+        picture.viewport.scale[axis] *= scale;
+        picture.viewport.shift[axis] += (scale - 1.0) / 2.0 + (first[axis] - 0.5) * scale / pixels;
+    }
+}
+
+/// Moves the rays to the right and down by these numbers of pixels.
+fn shift(picture: &mut Hypothesis, by: [f64; 2]) {
+    let size = picture.size();
+    (0..2).for_each(|axis| picture.viewport.shift[axis] += by[axis] / f64::from(size[axis]));
+}
+
+/// Cuts the viewport's width to a whole number, if the focal length is this.
+fn whole_width(picture: &mut Hypothesis, focal: f64) {
+    let [width, height] = picture.size().map(f64::from);
+    let half = (picture.recipe.camera.vfov_degrees.to_radians() / 2.0).tan();
+    let whole = 2.0 * half * focal * width / height;
+    if whole >= 1.0 {
+        picture.viewport.scale[0] *= whole.floor() / whole;
+    }
 }
 
 /// Balls, colours and metal of older editions.
@@ -493,7 +541,6 @@ fn edition_3_scene(picture: &mut Hypothesis) {
     let is_moved = picture.recipe.camera.look_from != DVec3::ZERO;
     older_scene(picture, if is_moved { 0.45 } else { 0.4 });
     edition_3_camera(picture);
-    picture.is_fine = false;
     let camera = &mut picture.recipe.camera;
     if camera.defocus_angle_degrees > 0.0 {
         camera.look_from = DVec3::new(3.0, 3.0, 2.0);
@@ -531,17 +578,14 @@ fn field_of_view(picture: &mut Hypothesis, tangent: fn(f64) -> f64) {
     *vfov = 2.0 * tangent.min(50.0).atan().to_degrees();
 }
 
-/// Changes the radius of the lens, given half the defocus angle in radians and the focus distance.
-fn lens(picture: &mut Hypothesis, radius: fn(f64, f64) -> f64) {
-    let camera = &mut picture.recipe.camera;
-    let half = camera.defocus_angle_degrees.to_radians() / 2.0;
-    let radius = radius(half, camera.effective_focus_distance());
-    camera.defocus_angle_degrees = 2.0 * radius.atan().to_degrees();
-}
-
 fn vector(picture: &mut Hypothesis, vector: fn(&mut Random) -> DVec3) {
     let steps = picture.plain();
     (steps.vector, steps.fuzz) = (vector, vector);
+}
+
+/// The vector or its opposite, on the side of the normal.
+fn on_hemisphere(vector: DVec3, normal: DVec3) -> DVec3 {
+    if vector.dot(normal) > 0.0 { vector } else { -vector }
 }
 
 /// A direction whose two angles are uniform; its pole is z.
@@ -552,22 +596,10 @@ fn polar(random: &mut Random) -> DVec3 {
     DVec3::new(x, y, cos)
 }
 
-/// Index of the ground: a sphere much larger than the scene.
-fn ground(scene: &Scene) -> Option<usize> {
-    scene.spheres.iter().position(|sphere| sphere.radius == 100.0)
-}
-
 fn change_bubble(picture: &mut Hypothesis, change: fn(&mut Scene, usize)) {
     let scene = Arc::make_mut(&mut picture.recipe.scene);
     if let Some(index) = bubble(scene) {
         change(scene, index);
-    }
-}
-
-fn move_ground(picture: &mut Hypothesis, radius: f64, height: f64) {
-    let scene = Arc::make_mut(&mut picture.recipe.scene);
-    if let Some(index) = ground(scene) {
-        (scene.spheres[index].radius, scene.spheres[index].center.y) = (radius, height);
     }
 }
 

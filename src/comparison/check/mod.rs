@@ -5,21 +5,24 @@
 //! otherwise the mistake with the closest picture is named.
 
 mod answer;
+mod fit;
 mod hypothesis;
 mod judge;
 mod mask;
 mod mine;
 mod mistakes;
 mod noise;
+mod numbers;
 mod random;
+mod screen;
 mod tracer;
 mod watch;
 mod written;
 
 pub use crate::job::output::Damage;
 pub use answer::{Answer, AnswerKind, Section};
-pub use hypothesis::{Compared, Hypothesis, Mistake, Studio};
-pub use judge::{Finding, judge};
+pub use hypothesis::{Hypothesis, Mistake, Studio};
+pub use judge::{Compared, Finding, judge};
 pub use mine::Mine;
 pub use mistakes::MISTAKES;
 pub use watch::{POLL_INTERVAL, Watched};
@@ -37,6 +40,7 @@ use serde_json::json;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 /// Checks pictures. Exit code 0 means that all are right, 1 that one is wrong, and 2 that one could not be checked.
@@ -52,7 +56,7 @@ pub fn run(options: &CheckOptions) -> Result<ExitCode> {
     }
     let [picture] = options.pictures.as_slice() else { return each(options) };
     let mine = Mine::read(picture)?;
-    let finding = judged(&mine, options)?;
+    let finding = judged(&mine, options, &AtomicBool::new(false))?;
     for (path, pixels) in files.iter().zip(pictures(&mine, &finding)) {
         let image = RgbImage::from_raw(mine.width, mine.height, pixels.into_iter().flatten().collect());
         let image = image.context("a picture has another size than its pixels")?;
@@ -63,10 +67,13 @@ pub fn run(options: &CheckOptions) -> Result<ExitCode> {
     Ok(finding.answer(&mine).verdict().exit_code())
 }
 
+/// Time between two lines of progress where there is no terminal.
+const INTERVAL: Duration = Duration::from_secs(5);
+
 /// Judges a picture and shows what is being tried.
-fn judged(mine: &Mine, options: &CheckOptions) -> Result<Finding> {
-    let mut display = Display::new(options.progress, 1, "{wide_msg}", "", Duration::ZERO);
-    let finding = judge(mine, options.stage, |what| display.update(0, || what));
+fn judged(mine: &Mine, options: &CheckOptions, stop: &AtomicBool) -> Result<Finding> {
+    let mut display = Display::new(options.progress, 1, "{wide_msg}", "", INTERVAL);
+    let finding = judge(mine, options.stage, stop, |what| display.update(0, || what));
     display.clear();
     finding
 }
@@ -77,7 +84,8 @@ fn each(options: &CheckOptions) -> Result<ExitCode> {
     let mut worst = Verdict::Same;
     for picture in &options.pictures {
         let judged =
-            Mine::read(picture).and_then(|mine| judged(&mine, options).map(|finding| (mine, finding)));
+            Mine::read(picture).and_then(|mine| Ok((judged(&mine, options, &AtomicBool::new(false))?, mine)));
+        let judged = judged.map(|(finding, mine)| (mine, finding));
         worst = worst.max(lines.add(picture, &judged)?);
     }
     Ok(worst.exit_code())
@@ -168,16 +176,28 @@ pub fn text(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> S
 /// The report as JSON.
 fn figures(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> serde_json::Value {
     let answer = finding.answer(mine);
-    let mistake = finding.named().zip(finding.mistake.as_ref()).map(|(mistake, found)| {
+    let explains = &finding.found.as_ref().unwrap_or(&finding.right).hypothesis;
+    let id = |it: &Hypothesis| it.named().filter(|_| it.numbers.is_empty()).map(|named| named.id);
+    let mistake = explains.named().filter(|_| explains.numbers.is_empty()).map(|mistake| {
         json!({
             "id": mistake.id,
             "section": mistake.section,
             "title": mistake.title,
             "remedy": mistake.remedy,
-            "note": found.hypothesis.note,
+            "note": explains.note,
             "explains_all": finding.is_sure,
-            "is_right": finding.is_other_right(),
-            "also": finding.alike.iter().map(|alike| alike.id).collect::<Vec<_>>(),
+            "is_right": mistake.is_right,
+            "also": finding.alike.iter().filter_map(id).collect::<Vec<_>>(),
+        })
+    });
+    let numbers = explains.numbers.iter().map(|number| {
+        json!({
+            "words": number.words,
+            "value": number.value,
+            "deviation": number.deviation,
+            "right": number.right,
+            "section": number.section,
+            "code": number.code,
         })
     });
     json!({
@@ -197,6 +217,9 @@ fn figures(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> se
         "seen": answer.evidence,
         "places": answer.places,
         "mistake": mistake,
+        "numbers": numbers.collect::<Vec<_>>(),
+        "variants": finding.right.hypothesis.rows.iter().filter(|row| row.is_right).map(|row| row.id).collect::<Vec<_>>(),
+        "samples": finding.samples(),
         "damages": mine.damages,
         "files": files.iter().map(|path| path.display().to_string()).collect::<Vec<_>>(),
     })

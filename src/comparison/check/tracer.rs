@@ -3,22 +3,20 @@
 //! too.
 
 use crate::job::recipe::Recipe;
+use crate::job::render::Viewport;
 use crate::kernel::sampling::pcg4d;
 use crate::scene::{Look, Scene, Sphere};
 use crate::stages::{BOOK_T_MIN, DielectricLaws, Diffuse, Rules, Shading};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The replaceable steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Steps {
     /// Number of the sequence of random numbers that a pixel uses.
     pub random: fn(u32) -> u32,
-    pub aspect: fn(u32, u32) -> f64,
-    /// Number of pixel spacings along a side of this many pixels.
-    pub spacings: fn(f64) -> f64,
-    /// Centre of the first pixel, in pixels from the corner: right and down.
-    pub first_pixel: [f64; 2],
     /// The first picture's colour, from column and row as shares of the last ones, and of the whole sides.
     pub gradient: fn([f64; 2], [f64; 2]) -> DVec3,
     /// Width of the square over which the samples of a pixel are spread, pixels.
@@ -29,6 +27,8 @@ pub struct Steps {
     pub t_max: fn(f64) -> f64,
     /// The distances of a sphere's two surfaces, from `a`, `h` and `c` of the quadratic; NaN if there are none.
     pub roots: fn(f64, f64, f64) -> [f64; 2],
+    /// The distance of the hit, from these two and the interval of valid ones.
+    pub root: fn([f64; 2], [f64; 2]) -> Option<f64>,
     /// The vector by which a ray moves along its direction in one unit of distance.
     pub along: fn(DVec3) -> DVec3,
     /// How far a bounced ray starts above the surface, scene units.
@@ -39,28 +39,30 @@ pub struct Steps {
     pub is_front: fn(DVec3, DVec3) -> bool,
     /// The colour of a normal where normals are shown.
     pub normal_colour: fn(DVec3) -> DVec3,
-    /// The height of a direction in the sky's gradient, 0 to 1.
-    pub sky: fn(DVec3) -> f64,
+    /// The height of a direction in the sky's gradient, 0 to 1; that of the ray, and that of the camera's ray.
+    pub sky: fn(DVec3, DVec3) -> f64,
+    /// The value of a sample that is added to its pixel.
+    pub sample: fn(DVec3) -> DVec3,
     /// The random vector of matte surfaces, which should be a unit vector.
     pub vector: fn(&mut Random) -> DVec3,
     /// The random vector of fuzz, likewise.
     pub fuzz: fn(&mut Random) -> DVec3,
-    /// The direction from a matte surface: from the random vector, the normal and the point; `None` for the stage's.
-    pub scatter: Option<fn(DVec3, DVec3, DVec3) -> DVec3>,
+    /// The direction from a matte surface: from two random vectors, the normal and the point; `None` for the stage's.
+    pub scatter: Option<fn([DVec3; 2], DVec3, DVec3) -> DVec3>,
     /// The light that a bounce off a surface of this albedo adds, and the factor of the light from later bounces.
     pub combine: fn(DVec3) -> [DVec3; 2],
     /// How many times a reflection subtracts the component along the normal: 2 in the book.
     pub reflects: f64,
-    /// Transforms the reflected direction before fuzz is added.
-    pub before_fuzz: fn(DVec3) -> DVec3,
+    /// The reflected direction before fuzz is added, from what `reflect` returned and the incoming direction.
+    pub before_fuzz: fn(DVec3, DVec3) -> DVec3,
     /// Whether a direction below the surface of metal ends the path.
     pub absorbs_below: bool,
     /// Transforms the incoming direction before glass refracts or reflects it.
     pub before_glass: fn(DVec3) -> DVec3,
     /// Probability that glass reflects, from the cosine and the ratio of the refraction indices.
     pub reflectance: fn(f64, f64) -> f64,
-    /// Factor of a refracted direction's component along the normal.
-    pub inwards: f64,
+    /// The length of a refracted direction's component along the normal, from its square; negative means outwards.
+    pub inwards: fn(f64) -> f64,
     /// Attenuation of glass.
     pub glass: DVec3,
     /// Whether glass refracts where it should reflect, and reflects where it should refract.
@@ -74,9 +76,6 @@ pub struct Steps {
 impl Steps {
     pub const OF_THE_BOOK: Steps = Steps {
         random: |pixel| pixel,
-        aspect: |width, height| f64::from(width) / f64::from(height),
-        spacings: |pixels| pixels,
-        first_pixel: [0.5; 2],
         gradient: |[x, y], _| DVec3::new(x, y, 0.0),
         filter: 1.0,
         t_min: None,
@@ -89,22 +88,24 @@ impl Steps {
             let sqrtd = discriminant.sqrt();
             [(h - sqrtd) / a, (h + sqrtd) / a]
         },
+        root: |roots, interval| roots.into_iter().find(|root| surrounds(interval, *root)),
         along: |direction| direction,
         lift: 0.0,
         normal: |to_point, radius| to_point / radius,
         is_front: |direction, outward| direction.dot(outward) < 0.0,
         normal_colour: |normal| 0.5 * (normal + 1.0),
-        sky: |direction| 0.5 * (direction.normalize().y + 1.0),
+        sky: |direction, _| 0.5 * (direction.normalize().y + 1.0),
+        sample: |light| light,
         vector: Random::unit_vector,
         fuzz: Random::unit_vector,
         scatter: None,
         combine: |albedo| [DVec3::ZERO, albedo],
         reflects: 2.0,
-        before_fuzz: DVec3::normalize,
+        before_fuzz: |reflected, _| reflected.normalize(),
         absorbs_below: true,
         before_glass: DVec3::normalize,
         reflectance: schlick,
-        inwards: 1.0,
+        inwards: |square| square.abs().sqrt(),
         glass: DVec3::ONE,
         swaps_glass: false,
         disk: |[u, v]| on_circle(u.sqrt(), v),
@@ -181,19 +182,19 @@ pub struct Tracer<'a> {
 
 impl<'a> Tracer<'a> {
     /// The tracer of a picture, whose pixels each stand for `factor` x `factor` of the reader's.
-    pub fn new(recipe: &'a Recipe, steps: Steps, factor: u32) -> Self {
+    pub fn new(recipe: &'a Recipe, steps: Steps, viewport: &Viewport, factor: u32) -> Self {
         let Recipe { camera, settings, rules, .. } = recipe;
         let size @ [width, height] = [settings.width, settings.height];
         let focus = camera.effective_focus_distance();
         let viewport_height = 2.0 * (camera.vfov_degrees.to_radians() / 2.0).tan() * focus;
         let basis = camera.basis();
-        let across = basis.u * viewport_height * (steps.aspect)(width, height);
+        let across = basis.u * viewport_height * f64::from(width) / f64::from(height);
         let down = -basis.v * viewport_height;
-        let corner = camera.look_from - focus * basis.w - (across + down) / 2.0;
-        let factor = f64::from(factor);
-        let spacings = |pixels: u32| ((steps.spacings)(factor * f64::from(pixels)) / factor).max(1.0);
-        let first_pixel = steps.first_pixel.map(|at| (at + (factor - 1.0) / 2.0) / factor);
-        let (across, down) = (across / spacings(width), down / spacings(height));
+        let Viewport { scale, shift } = viewport;
+        let middle = camera.look_from - focus * basis.w + shift[0] * across + shift[1] * down;
+        let (across, down) = (across * scale[0], down * scale[1]);
+        let corner = middle - (across + down) / 2.0;
+        let (across, down) = (across / f64::from(width), down / f64::from(height));
         let radius = focus * (camera.defocus_angle_degrees.to_radians() / 2.0).tan();
         let t_min = rules.surface.smallest_distance().unwrap_or(BOOK_T_MIN);
         Tracer {
@@ -202,33 +203,44 @@ impl<'a> Tracer<'a> {
             max_depth: settings.max_depth,
             size,
             center: camera.look_from,
-            first_pixel: corner + first_pixel[0] * across + first_pixel[1] * down,
+            first_pixel: corner + (across + down) / 2.0,
             across,
             down,
             lens: (radius > 0.0).then(|| [basis.u * radius, basis.v * radius]),
             t_min: steps.t_min.unwrap_or(t_min),
-            steps: Steps { filter: (steps.filter - 1.0) / factor + 1.0, ..steps },
+            steps: Steps { filter: (steps.filter - 1.0) / f64::from(factor) + 1.0, ..steps },
         }
     }
 
-    /// Pixel means: linear RGB, row by row from the top; NaN where `mask` leaves a pixel out. Each `half` has its own
-    /// random numbers.
-    pub fn means(&self, samples: u32, half: u32, mask: Option<&[bool]>) -> Vec<[f64; 3]> {
+    /// Mean and variance of these samples of each pixel: linear RGB, row by row from the top; NaN where `mask` leaves a
+    /// pixel out, and after `stop` is set.
+    pub fn moments(&self, samples: Range<u32>, mask: Option<&[bool]>, stop: &AtomicBool) -> Vec<[[f64; 3]; 2]> {
         let [width, height] = self.size;
-        (0..width * height)
-            .into_par_iter()
-            .with_min_len(256)
-            .map(|pixel| {
-                if mask.is_some_and(|mask| !mask[pixel as usize]) {
-                    return [f64::NAN; 3];
-                }
-                let sequence = (self.steps.random)(pixel) ^ (half << 30);
-                let mut random = Random { counter: 0, sequence };
-                let (column, row) = (pixel % width, pixel / width);
-                let sum: DVec3 = (0..samples).map(|_| self.sample(column, row, &mut random)).sum();
-                (sum / f64::from(samples)).to_array()
-            })
-            .collect()
+        let count = f64::from(samples.end - samples.start);
+        let pixel = |pixel: u32| {
+            if mask.is_some_and(|mask| !mask[pixel as usize]) || stop.load(Ordering::Relaxed) {
+                return [[f64::NAN; 3]; 2];
+            }
+            let sequence = (self.steps.random)(pixel);
+            let (mut sum, mut square) = (DVec3::ZERO, DVec3::ZERO);
+            for sample in samples.clone() {
+                // Each has its own numbers, so that paths which a mistake does not change stay equal.
+                let mut random = Random { counter: sample << 10, sequence };
+                let value = (self.steps.sample)(self.sample(pixel % width, pixel / width, &mut random));
+                sum += value;
+                square += value * value;
+            }
+            // What is not a number becomes 0 in most programs.
+            let mean = if sum.is_finite() { sum / count } else { DVec3::ZERO };
+            let variance = (square / count - mean * mean) * (count / (count - 1.0).max(1.0));
+            let variance = if variance.is_finite() { variance.max(DVec3::ZERO) } else { DVec3::ZERO };
+            [mean, variance].map(|of| of.to_array())
+        };
+        (0..width * height).into_par_iter().with_min_len(64).map(pixel).collect()
+    }
+
+    pub fn width(&self) -> usize {
+        self.size[0] as usize
     }
 
     /// The sphere that the middle of each pixel shows; `None` for the sky.
@@ -266,9 +278,9 @@ impl<'a> Tracer<'a> {
     }
 
     fn colour(&self, mut ray: Ray, column: u32, random: &mut Random) -> DVec3 {
-        let (mut light, mut throughput) = (DVec3::ZERO, DVec3::ONE);
+        let (mut light, mut throughput, seen) = (DVec3::ZERO, DVec3::ONE, ray.direction);
         for _ in 0..self.max_depth {
-            let Some(hit) = self.hit(&ray) else { return light + throughput * self.sky(ray.direction) };
+            let Some(hit) = self.hit(&ray) else { return light + throughput * self.sky(ray.direction, seen) };
             match self.rules.shading {
                 Shading::FirstHitRed => return DVec3::X,
                 Shading::Normals => return (self.steps.normal_colour)(hit.normal),
@@ -287,8 +299,8 @@ impl<'a> Tracer<'a> {
         light
     }
 
-    fn sky(&self, direction: DVec3) -> DVec3 {
-        self.scene.sky.bottom.lerp(self.scene.sky.top, (self.steps.sky)(direction))
+    fn sky(&self, direction: DVec3, seen: DVec3) -> DVec3 {
+        self.scene.sky.bottom.lerp(self.scene.sky.top, (self.steps.sky)(direction, seen))
     }
 
     fn nearest(&self, ray: &Ray) -> Option<(f64, &'a Sphere)> {
@@ -316,7 +328,7 @@ impl<'a> Tracer<'a> {
         let a = ray.direction.length_squared();
         let h = ray.direction.dot(to_center);
         let c = to_center.length_squared() - sphere.radius * sphere.radius;
-        (self.steps.roots)(a, h, c).into_iter().find(|t| self.t_min < *t && *t < t_max)
+        (self.steps.root)((self.steps.roots)(a, h, c), [self.t_min, t_max])
     }
 
     fn scatter(&self, ray: &Ray, hit: &Hit, random: &mut Random) -> Option<(DVec3, DVec3)> {
@@ -325,7 +337,7 @@ impl<'a> Tracer<'a> {
         match material.look() {
             Look::Matte => Some((attenuation, self.diffuse(hit, random))),
             Look::Mirror { fuzz } => {
-                let reflected = (self.steps.before_fuzz)(self.reflect(ray.direction, hit.normal));
+                let reflected = (self.steps.before_fuzz)(self.reflect(ray.direction, hit.normal), ray.direction);
                 let direction = reflected + fuzz * (self.steps.fuzz)(random);
                 let is_absorbed = self.steps.absorbs_below && direction.dot(hit.normal) <= 0.0;
                 (!is_absorbed).then_some((attenuation, direction))
@@ -340,7 +352,7 @@ impl<'a> Tracer<'a> {
     fn diffuse(&self, hit: &Hit, random: &mut Random) -> DVec3 {
         let vector = (self.steps.vector)(random);
         if let Some(scatter) = self.steps.scatter {
-            return scatter(vector, hit.normal, hit.point);
+            return scatter([vector, (self.steps.vector)(random)], hit.normal, hit.point);
         }
         if self.rules.diffuse == Diffuse::Hemisphere {
             return if vector.dot(hit.normal) > 0.0 { vector } else { -vector };
@@ -364,12 +376,17 @@ impl<'a> Tracer<'a> {
             return self.reflect(direction, normal);
         }
         let across = ratio * (direction + cos_theta * normal);
-        across - self.steps.inwards * (1.0 - across.length_squared()).abs().sqrt() * normal
+        across - (self.steps.inwards)(1.0 - across.length_squared()) * normal
     }
 
     fn reflect(&self, v: DVec3, normal: DVec3) -> DVec3 {
         v - self.steps.reflects * v.dot(normal) * normal
     }
+}
+
+/// Whether a distance is inside the interval of valid ones.
+pub fn surrounds([min, max]: [f64; 2], root: f64) -> bool {
+    min < root && root < max
 }
 
 pub fn schlick(cosine: f64, ratio: f64) -> f64 {

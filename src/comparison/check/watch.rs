@@ -99,7 +99,7 @@ pub(super) fn run(options: &CheckOptions) -> Result<ExitCode> {
     let mut watched: Vec<Watched> = options.pictures.iter().map(|path| Watched::new(path)).collect();
     while !interrupt.is_set() {
         for watched in &mut watched {
-            if let Some(judged) = watched.judged(|mine| judged(mine, options)) {
+            if let Some(judged) = watched.judged(|mine| judged(mine, options, interrupt.flag())) {
                 lines.add(&watched.path, &judged)?;
             }
         }

@@ -3,6 +3,7 @@
 use super::Mine;
 use crate::job::output::Encoding;
 use crate::job::recipe::Recipe;
+use crate::numbers::statistics::normal::distribution;
 
 /// How a picture is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,8 +28,6 @@ pub enum Order {
     Flipped,
     Mirrored,
     Rotated,
-    /// Moved to the right and down by these numbers of pixels.
-    Moved(i8, i8),
     /// Column by column, though the header has the right size.
     Columns,
     /// The header has width and height exchanged.
@@ -58,10 +57,6 @@ impl Order {
             Order::Flipped => at(x, height - 1 - y),
             Order::Mirrored => at(width - 1 - x, y),
             Order::Rotated => at(width - 1 - x, height - 1 - y),
-            Order::Moved(right, down) => {
-                let (x, y) = (x.checked_add_signed((-right).into())?, y.checked_add_signed((-down).into())?);
-                if x < width && y < height { at(x, y) } else { None }
-            }
             Order::Columns => at(pixel / height, pixel % height),
             Order::Transposed => Some(3 * (x * height + y) + channel),
             Order::Planar => Some(3 * (index % (width * height)) + index / (width * height)),
@@ -96,9 +91,9 @@ pub struct Seen {
     pub size: [u32; 2],
     /// NaN where the file leaves the value open.
     pub values: Vec<[f64; 3]>,
-    /// Half of the step between neighbouring values.
-    pub half_steps: Vec<[f64; 3]>,
-    /// Largest difference of means that is ignored.
+    /// Bytes in a step of the file's values, at least 1.
+    pub step: f64,
+    /// Largest difference of means that is ignored, bytes.
     pub tolerance: f64,
 }
 
@@ -110,37 +105,24 @@ impl Seen {
         if written.order.exchanges_sides() {
             size.reverse();
         }
-        let (mut values, mut half_steps) =
-            (vec![[f64::NAN; 3]; mine.bytes.len()], vec![[0.0; 3]; mine.bytes.len()]);
-        let step = mine.step();
+        let mut values = vec![[f64::NAN; 3]; mine.bytes.len()];
+        let levels: Vec<Levels> = (0..size[1] as usize).map(|row| Levels::new(written, row, size[1] as usize)).collect();
         let bytes = mine.bytes.as_flattened();
         for (index, byte) in bytes.iter().take(3 * (mine.rows * mine.width) as usize).enumerate() {
             let Some(source) = written.order.source(index, file) else { continue };
             let (pixel, channel) = (source / 3, written.channels[source % 3]);
             let Some(value) = values.get_mut(pixel) else { continue };
             let byte = written.unwrapped(*byte, || expected(pixel, channel));
-            let [linear, half] = written.linear(byte, pixel / size[0] as usize, size[1] as usize);
-            (value[channel], half_steps[pixel][channel]) = (linear, half * step);
+            value[channel] = levels[pixel / size[0] as usize].middles[usize::from(byte)];
         }
         for (value, _) in
             values.iter_mut().zip(mine.ignored.iter().flat_map(|all| all.iter())).filter(|(_, is)| **is)
         {
             *value = [f64::NAN; 3];
         }
-        let tolerance = if mine.ignored.is_some() { EQUAL } else { 1e-4 };
-        Seen { size, values, half_steps, tolerance }
-    }
-
-    /// The mean of each square of `factor` x `factor` pixels.
-    pub fn reduced(&self, factor: u32) -> Seen {
-        let reduce = |of: &[[f64; 3]]| reduced(of, self.size[0] as usize, factor as usize);
-        let size = self.size.map(|side| side / factor);
-        Seen {
-            size,
-            values: reduce(&self.values),
-            half_steps: reduce(&self.half_steps),
-            tolerance: self.tolerance,
-        }
+        // Small spheres elsewhere still throw a little light.
+        let tolerance = if mine.ignored.is_some() { 256.0 * EQUAL } else { 0.0 };
+        Seen { size, values, step: mine.step(), tolerance }
     }
 }
 
@@ -180,17 +162,6 @@ impl Written {
         linear.iter().enumerate().map(|(index, pixel)| pixel.map(|x| byte(index, x))).collect()
     }
 
-    /// These linear values as [`Seen`] would have them without noise: clipped to the range of the file.
-    pub fn predicted(&self, seen: &Seen, linear: &[[f64; 3]]) -> Vec<[f64; 3]> {
-        let [width, height] = seen.size.map(|side| side as usize);
-        let rows = linear.chunks(width.max(1)).enumerate();
-        rows.flat_map(|(row, pixels)| {
-            let [least, most] = [0, 255].map(|byte| self.linear(byte, row, height)[0]);
-            pixels.iter().map(move |pixel| pixel.map(|x| x.clamp(least, most)))
-        })
-        .collect()
-    }
-
     /// Rearranges the linear picture to the layout of the file.
     pub fn laid_out(&self, linear: &[[f64; 3]], size: [u32; 2]) -> Vec<[f64; 3]> {
         let mut size = size.map(|side| side as usize);
@@ -203,6 +174,65 @@ impl Written {
         };
         let pixel = |pixel: usize| [0, 1, 2].map(|channel| value(3 * pixel + channel).unwrap_or(0.0));
         (0..linear.len()).map(pixel).collect()
+    }
+}
+
+/// What the bytes of a row stand for.
+pub struct Levels {
+    written: Written,
+    row: usize,
+    height: usize,
+    /// The linear value in the middle of each byte.
+    middles: [f64; 256],
+}
+
+impl Levels {
+    pub fn new(written: &Written, row: usize, height: usize) -> Levels {
+        let middles = std::array::from_fn(|byte| written.linear(byte as u8, row, height)[0]);
+        Levels { written: *written, row, height, middles }
+    }
+
+    /// The linear value that the largest byte stands for.
+    pub fn most(&self) -> f64 {
+        self.middles[255]
+    }
+
+    /// A linear value in bytes, before they are cut to whole numbers.
+    fn real(&self, linear: f64) -> f64 {
+        let rounding = if self.written.rounds { 0.5 } else { 0.0 };
+        self.written.levels * self.written.curve.displayed(linear.max(0.0), self.row, self.height) + rounding
+    }
+
+    /// The linear radiance of one byte at this value.
+    pub fn step(&self, linear: f64) -> f64 {
+        // The darkest have almost none.
+        let byte = self.real(linear).clamp(4.0, 255.0) as u8;
+        2.0 * self.written.linear(byte, self.row, self.height)[1]
+    }
+
+    /// The mean and the variance of what bytes stand for, whose values scatter around `linear` by `deviation`, both
+    /// linear.
+    pub fn expected(&self, linear: f64, deviation: f64) -> [f64; 2] {
+        /// From here on, rounding is noise, and not a staircase.
+        const NOISE: f64 = 1.5;
+        let (real, step) = (self.real(linear), self.step(linear));
+        let deviation = deviation / step;
+        let reach = 5.0 * deviation;
+        if deviation > NOISE && real + 3.0 * deviation < 256.0 {
+            return [linear, step * step * (deviation * deviation + 1.0 / 12.0)];
+        }
+        let [first, last] = [real - reach, real + reach].map(|end| end.clamp(0.0, 255.0) as usize);
+        if first == last {
+            return [self.middles[first], 0.0];
+        }
+        let (mut below, mut mean, mut square) = (0.0, 0.0, 0.0);
+        for (byte, value) in self.middles.iter().enumerate().take(last + 1).skip(first) {
+            let next = if byte == last { 1.0 } else { distribution(((byte + 1) as f64 - real) / deviation) };
+            mean += (next - below) * value;
+            square += (next - below) * value * value;
+            below = next;
+        }
+        [mean, (square - mean * mean).max(0.0)]
     }
 }
 

@@ -37,12 +37,26 @@ pub struct RenderJob {
     camera: Camera,
     settings: RenderSettings,
     rules: Rules,
+    viewport: Viewport,
+}
+
+/// Where pictures of other programs have their viewport: across at `0.5 + scale * (p - 0.5) + shift` instead of `p`, in
+/// shares of its width and height from the upper left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Viewport {
+    pub scale: [f64; 2],
+    pub shift: [f64; 2],
+}
+
+impl Viewport {
+    pub const WHOLE: Viewport = Viewport { scale: [1.0; 2], shift: [0.0; 2] };
 }
 
 impl PartialEq for RenderJob {
     /// Scenes that share memory are not compared sphere by sphere.
     fn eq(&self, other: &Self) -> bool {
-        (self.camera, self.settings, self.rules) == (other.camera, other.settings, other.rules)
+        (self.camera, self.settings, self.rules, self.viewport)
+            == (other.camera, other.settings, other.rules, other.viewport)
             && (Arc::ptr_eq(&self.scene, &other.scene) || self.scene == other.scene)
     }
 }
@@ -60,7 +74,7 @@ impl RenderJob {
     ) -> Result<Self, JobError> {
         let scene = scene.into();
         scene.validate()?;
-        RenderJob { scene, camera, settings, rules }.seen_by(camera, settings)
+        RenderJob { scene, camera, settings, rules, viewport: Viewport::WHOLE }.seen_by(camera, settings)
     }
 
     /// The same scene and rules with another camera or other settings. The scene is shared and not validated again.
@@ -79,7 +93,16 @@ impl RenderJob {
                 return Err(JobError::Settings(reason));
             }
         }
-        Ok(RenderJob { scene: Arc::clone(&self.scene), camera, settings, rules: self.rules })
+        Ok(RenderJob { scene: Arc::clone(&self.scene), camera, settings, ..*self })
+    }
+
+    /// The same job with another viewport.
+    pub fn through(self, viewport: Viewport) -> Self {
+        RenderJob { viewport, ..self }
+    }
+
+    pub fn viewport(&self) -> &Viewport {
+        &self.viewport
     }
 
     /// Whether both jobs share one scene in memory, under the same rules.

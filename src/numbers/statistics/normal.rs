@@ -1,7 +1,12 @@
 //! The normal distribution, and the conversion of Student's distribution to it.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
-use statrs::function::erf::erfc_inv;
+use statrs::function::erf::{erfc, erfc_inv};
+
+/// The probability of a normal number below `z`.
+pub fn distribution(z: f64) -> f64 {
+    0.5 * erfc(-z / std::f64::consts::SQRT_2)
+}
 
 /// The `z >= 0` that a normal number exceeds, on either side of 0, with the probability `chance`: 0 for 1 and above, and
 /// a number that is never exceeded for 0.
