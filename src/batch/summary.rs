@@ -68,10 +68,7 @@ pub(super) const PICTURE: [Line; 10] = [
     ("backend", &["{backend} {device}, lanes {lanes}, threads {threads}"]),
     ("kernel", &["{kernel}"]),
     ("left out", &["{left_out}"]),
-    (
-        "samples",
-        &["{samples_per_pixel} per pixel, {added_samples_per_pixel} of them new, end: {ended_by}"],
-    ),
+    ("samples", &["{samples_per_pixel} per pixel, {added_samples_per_pixel} of them new, end: {ended_by}"]),
     (
         "time",
         &[

@@ -214,8 +214,19 @@ impl Progressive {
     /// Ends the render after the current pass and returns the film; `None` if there is no film.
     pub fn take_film(&self) -> Option<Film> {
         let (sender, receiver) = mpsc::channel();
-        self.send(RenderCommand::Take(sender));
-        receiver.recv().ok().flatten()
+        self.take(move |film, _| _ = sender.send(film));
+        receiver.recv().ok()
+    }
+
+    /// Ends the render at the end of its pass. `take` gets its film and status, on the render thread; without a film, it is
+    /// dropped. The next render begins after that, and does not cancel the pass.
+    pub fn hand_over(&mut self, take: impl FnOnce(Film, Status) + Send + 'static) {
+        std::mem::take(&mut self.cancel).stop.store(true, Ordering::Relaxed);
+        self.take(take);
+    }
+
+    fn take(&self, take: impl FnOnce(Film, Status) + Send + 'static) {
+        self.send(RenderCommand::Take(Box::new(take)));
     }
 
     /// Sends a command. A dead thread has reported its end in the status, so a failed send can be ignored.

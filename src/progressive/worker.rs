@@ -7,7 +7,7 @@ use crate::backends::BackendChoice;
 use crate::film::Film;
 use crate::job::render::RenderError;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::mpsc::{Receiver, Sender, TryRecvError};
+use std::sync::mpsc::{Receiver, TryRecvError};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
@@ -23,7 +23,7 @@ pub(super) enum RenderCommand {
     Inspect(Box<dyn FnOnce(&Film) + Send>),
     Look,
     SetView(View),
-    Take(Sender<Option<Film>>),
+    Take(Box<dyn FnOnce(Film, Status) + Send>),
     Finish,
 }
 
@@ -97,9 +97,10 @@ impl Worker {
                 self.render.iter_mut().for_each(|render| render.pictured_samples = None);
                 return;
             }
-            RenderCommand::Take(taker) => {
-                // If the receiver is gone, the film is not needed.
-                let _ = taker.send(self.take_film());
+            RenderCommand::Take(take) => {
+                if let Some((film, status)) = self.take() {
+                    take(film, status);
+                }
                 return;
             }
             RenderCommand::Look | RenderCommand::SetPlan(_) => {}
@@ -165,13 +166,13 @@ impl Worker {
         }
     }
 
-    fn take_film(&mut self) -> Option<Film> {
+    fn take(&mut self) -> Option<(Film, Status)> {
         self.finish_samples();
         let Render { film, status, .. } = self.render.take()?;
         if !status.phase.is_over() {
-            self.shared.publish(&Status { phase: Phase::Idle, ..status });
+            self.shared.publish(&Status { phase: Phase::Idle, ..status.clone() });
         }
-        Some(film)
+        Some((film, status))
     }
 
     fn abandon(&mut self) {

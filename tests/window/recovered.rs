@@ -1,18 +1,17 @@
-//! State that the next window takes over: settings, and the autosaved film.
+//! State that the next window takes over: settings, edits and films.
 
-use crate::harness::{has_samples, opened, says, send, until};
+use crate::harness::{control, has_samples, opened, says, send, sized, until};
 use crate::questions::Ask as _;
 use crate::right::{drop_picture, gradient, until_compared};
 use eframe::{App, Storage};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 use weekender::app::{Command, Device, Dock, Show, Theme, Window};
 use weekender::cli::{self, Request, WindowOptions};
-use weekender::film::{checkpoint, key};
+use weekender::film::checkpoint;
 use weekender::progressive::Stop;
 use weekender::stages::{Means, Stage};
 
@@ -34,8 +33,25 @@ pub fn held(window: &Window) -> u64 {
     window.status().samples_per_pixel.saturating_sub(added)
 }
 
-fn has_offer(harness: &Harness<'_, Window>) -> bool {
-    harness.query_by_label("Resume").is_some()
+/// Makes the film one that was traced for a minute.
+fn make_long(harness: &mut Harness<'_, Window>) {
+    harness.state_mut().tracing.main.seconds_before = Some(60.0);
+}
+
+/// The window ends as if it were killed after its first seconds.
+fn kill(harness: Harness<'_, Window>, state: &Path) {
+    drop(harness);
+    std::fs::write(state.join("window.lock"), "").unwrap();
+}
+
+fn films(state: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(state.join("films")).into_iter().flatten();
+    let paths = entries.map(|entry| entry.unwrap().path());
+    paths.filter(|path| path.extension().is_some_and(|ending| ending == "exr")).collect()
+}
+
+fn angle(window: &Window) -> f64 {
+    window.shown_document().camera.vfov_degrees
 }
 
 #[test]
@@ -43,20 +59,21 @@ fn the_last_picture_comes_back_with_its_samples() {
     let state = tempfile::tempdir().unwrap();
     let mut first = window(&format!("{PICTURE} --samples 40"), state.path(), 3600);
     until(&mut first, "the end", has_samples(40));
-    // Another window at the same time saves nothing.
-    let mut second = window("--stage metal --size 32x18 --samples 4", state.path(), 0);
+    make_long(&mut first);
+    // Another window at the same time keeps its films, too, but not its edits.
+    let mut second = window("--stage metal --size 32x18 --samples 4", state.path(), 3600);
     until(&mut second, "the end", has_samples(4));
-    second.run_steps(3);
+    make_long(&mut second);
     second.state_mut().on_exit(None);
     first.state_mut().on_exit(None);
     drop((first, second));
+    assert_eq!(films(state.path()).len(), 2);
 
     let mut next = window("--device cpu", state.path(), 3600);
     until(&mut next, "its samples", |window| held(window) == 40);
     let document = next.state().shown_document();
     assert_eq!((document.stage().unwrap().id, document.camera.vfov_degrees), ("glass-schlick", 31.0));
     assert_eq!((document.stop, document.size()), (Stop::at_samples(40), [32, 18]));
-    assert!(!has_offer(&next));
     // The stop was this picture's alone.
     send(&mut next, Command::NextStage);
     assert_eq!(next.state().shown_document().stop.samples, None);
@@ -70,6 +87,7 @@ fn the_picture_before_a_check_comes_back_with_its_samples() {
     let state = tempfile::tempdir().unwrap();
     let mut first = window(&format!("{PICTURE} --samples 40"), state.path(), 3600);
     until(&mut first, "the end", has_samples(40));
+    make_long(&mut first);
     let _checked = drop_picture(&mut first, &gradient(false));
     until_compared(&mut first);
     assert_ne!(first.state().shown_document().stage().unwrap().id, "glass-schlick");
@@ -77,59 +95,102 @@ fn the_picture_before_a_check_comes_back_with_its_samples() {
     drop(first);
     let mut next = window("--device cpu", state.path(), 3600);
     until(&mut next, "its samples", |window| held(window) == 40);
-    assert_eq!(next.state().shown_document().camera.vfov_degrees, 31.0);
+    assert_eq!(angle(next.state()), 31.0);
 }
 
-/// Another picture that is opened next must not replace it.
+/// Whichever was shown last. What took less than ten seconds is not kept.
 #[test]
-fn a_long_film_is_offered_to_the_next_window() {
-    for (seconds, is_offered) in [(59, false), (61, true)] {
-        let state = tempfile::tempdir().unwrap();
-        let film = state.path().join("autosave.exr");
-        let mut first = window(&format!("{PICTURE} --samples 40"), state.path(), 3600);
-        until(&mut first, "the end", has_samples(40));
-        first.state_mut().on_exit(None);
-        drop(first);
-        let saved = checkpoint::load(&film).unwrap();
-        let mut description = saved.description;
-        description.set(key::SECONDS, seconds);
-        checkpoint::save(&film, &saved.film, &description).unwrap();
-        let next = window("--stage metal --size 32x18 --device cpu", state.path(), 3600);
-        assert_eq!(has_offer(&next), is_offered, "{seconds}");
+fn the_films_of_several_pictures_are_there_in_the_next_window() {
+    let state = tempfile::tempdir().unwrap();
+    let mut first = window(&format!("{PICTURE} --samples 40"), state.path(), 3600);
+    for (degrees, samples) in [(31.0, 40), (41.0, 24), (51.0, 16)] {
+        let document = first.state_mut().document_mut();
+        (document.camera.vfov_degrees, document.stop) = (degrees, Stop::at_samples(samples));
+        first.run_steps(30);
+        until(&mut first, "the end", |window| {
+            has_samples(samples)(window) && window.status().phase.is_over()
+        });
+        if degrees < 50.0 {
+            make_long(&mut first);
+        }
     }
+    first.state_mut().on_exit(None);
+    drop(first);
+    assert_eq!(films(state.path()).len(), 2);
+    let mut next = window("--device cpu", state.path(), 3600);
+    for (degrees, samples) in [(31.0, 40), (41.0, 24)] {
+        let document = next.state_mut().document_mut();
+        (document.camera.vfov_degrees, document.stop) = (degrees, Stop::at_samples(1));
+        until(&mut next, "its samples", |window| angle(window) == degrees && held(window) == samples);
+    }
+    // A restart throws them away.
+    send(&mut next, Command::Restart);
+    until(&mut next, "new samples", |window| held(window) == 0 && has_samples(1)(window));
+    until(&mut next, "one film less", |_| films(state.path()).len() == 1);
+    send(&mut next, Command::DeleteFilms);
+    until(&mut next, "no film", |_| films(state.path()).is_empty());
+}
+
+/// A window of another size shows it scaled.
+#[test]
+fn a_film_comes_back_into_a_window_of_another_size() {
+    let state = tempfile::tempdir().unwrap();
+    let options = |words: &str| options(words, Some(state.path()), Duration::from_secs(3600));
+    let mut first =
+        sized(Window::new(options("--stage metal --samples 4 --device cpu")).unwrap(), [700.0, 500.0]);
+    until(&mut first, "the end", |window| has_samples(4)(window) && window.status().phase.is_over());
+    make_long(&mut first);
+    let size = first.state().shown_document().size();
+    first.state_mut().on_exit(None);
+    drop(first);
+    let mut next = sized(Window::new(options("--device cpu")).unwrap(), [900.0, 700.0]);
+    until(&mut next, "its samples", |window| held(window) == 4 && window.shown_document().size() == size);
+    send(&mut next, Command::RenderAtSize);
+    until(&mut next, "another size", |window| window.shown_document().size() != size);
+    until(&mut next, "its picture", has_samples(1));
+    assert_eq!(held(next.state()), 0);
 }
 
 #[test]
 fn window_that_ended_early_resumes_its_film() {
     let state = tempfile::tempdir().unwrap();
-    let film = state.path().join("autosave.exr");
     let mut first = window(&format!("{PICTURE} --samples 4000000000"), state.path(), 0);
-    until(&mut first, "a film", |_| film.exists());
-    // Not in order.
-    drop(first);
-    let samples = checkpoint::load(&film).unwrap().film.sample_count();
+    make_long(&mut first);
+    until(&mut first, "a film", |_| !films(state.path()).is_empty());
+    kill(first, state.path());
+    let film = &films(state.path())[0];
+    let samples = checkpoint::load(film).unwrap().film.sample_count();
 
+    // It waits, whatever other windows do.
+    let mut other = window("--stage metal --size 32x18 --device cpu", state.path(), 0);
+    make_long(&mut other);
+    until(&mut other, "a film of its own", |_| films(state.path()).len() == 2);
+    send(&mut other, Command::Undo);
+    until(&mut other, "the picture and its samples", |window| {
+        angle(window) == 31.0 && held(window) >= samples
+    });
+    kill(other, state.path());
     let mut next = window("--device cpu", state.path(), 3600);
-    assert_eq!(next.state().shown_document().camera.vfov_degrees, 31.0);
-    assert!(says("ended early")(next.state()) && !has_offer(&next), "{:?}", next.state().messages());
-    until(&mut next, "its samples", |window| held(window) == samples);
-    drop(next);
+    assert_eq!(angle(next.state()), 31.0);
+    assert!(says("ended early")(next.state()), "{:?}", next.state().messages());
+    until(&mut next, "its samples", |window| held(window) >= samples);
+}
 
-    // It waits for an answer, whatever other windows do.
-    for _ in 0..2 {
-        let mut other = window("--stage metal --size 32x18 --device cpu", state.path(), 0);
-        assert!(has_offer(&other));
-        until(&mut other, "a film of its own", |_| film.exists());
-        other.state_mut().on_exit(None);
-    }
-    let mut last = window("--device cpu", state.path(), 3600);
-    last.get_by_label("Resume").click();
-    // The other picture may have as many samples.
-    let is_back = |window: &Window| window.shown_document().camera.vfov_degrees == 31.0;
-    until(&mut last, "the picture and its samples", |window| is_back(window) && held(window) == samples);
-    last.state_mut().on_exit(None);
-    drop(last);
-    assert!(!has_offer(&window("--device cpu", state.path(), 3600)), "the user has answered");
+#[test]
+fn a_window_that_ended_at_once_is_not_restored_but_offered() {
+    let state = tempfile::tempdir().unwrap();
+    let mut first = window(PICTURE, state.path(), 3600);
+    until(&mut first, "edits", |_| state.path().join("edits.json").exists());
+    drop(first);
+    let mut next = window("--device cpu", state.path(), 3600);
+    assert_ne!(next.state().shown_document().stage().unwrap().id, "glass-schlick");
+    assert!(says("ended soon")(next.state()), "{:?}", next.state().messages());
+    control(&next, "Undo").click();
+    next.run_steps(3);
+    assert_eq!((angle(next.state()), next.state().messages().len()), (31.0, 1));
+    next.state_mut().on_exit(None);
+    drop(next);
+    assert_eq!(angle(window("--device cpu", state.path(), 3600).state()), 31.0, "it ended in order");
 }
 
 #[test]
@@ -137,29 +198,28 @@ fn a_panic_saves_the_film() {
     let state = tempfile::tempdir().unwrap();
     let mut first = window(&format!("{PICTURE} --samples 4000000000"), state.path(), 3600);
     until(&mut first, "samples", has_samples(16));
+    make_long(&mut first);
     let samples = first.state().status().samples_per_pixel;
     let panicked = catch_unwind(AssertUnwindSafe(move || {
         let _window = first;
         panic!("a slip of the window");
     }));
     assert!(panicked.is_err());
+    assert!(state.path().join("window.lock").exists(), "it did not end in order");
     let mut next = window("--device cpu", state.path(), 3600);
-    assert!(says("ended early")(next.state()), "{:?}", next.state().messages());
-    until(&mut next, "its samples", |window| held(window) >= samples);
+    send(&mut next, Command::Undo);
+    until(&mut next, "its samples", |window| angle(window) == 31.0 && held(window) >= samples);
 }
 
-/// A film of another picture that was saved earlier does not come in its place.
 #[test]
 fn last_edits_come_back_with_their_history() {
     let state = tempfile::tempdir().unwrap();
-    let film = state.path().join("autosave.exr");
-    let mut first = window(&format!("{PICTURE} --samples 4000000000"), state.path(), 0);
-    until(&mut first, "a film", |_| film.exists());
-    drop(first);
+    let first = window(PICTURE, state.path(), 3600);
+    kill(first, state.path());
 
-    let mut second = window("--device cpu", state.path(), 3600);
+    // Also those from before a picture that was asked for.
+    let mut second = window("--stage metal --size 32x18 --device cpu", state.path(), 3600);
     let count = |harness: &Harness<'_, Window>| harness.state().shown_document().scene().spheres.len();
-    send(&mut second, Command::Stage(Stage::find("metal").unwrap()));
     let before = count(&second);
     send(&mut second, Command::AddSphere);
     second.run_steps(30);
@@ -167,26 +227,17 @@ fn last_edits_come_back_with_their_history() {
     second.run_steps(30);
     let edits = state.path().join("edits.json");
     until(&mut second, "the edits", |_| std::fs::read_to_string(&edits).unwrap().contains("77.0"));
-    drop(second);
+    kill(second, state.path());
 
     let mut third = window("--device cpu", state.path(), 3600);
-    let angle = |harness: &Harness<'_, Window>| harness.state().shown_document().camera.vfov_degrees;
     assert_eq!(third.state().shown_document().stage().unwrap().id, "metal");
-    assert_eq!((count(&third), angle(&third)), (before + 1, 77.0));
-    assert!(has_offer(&third), "the film, which is another picture's");
+    assert_eq!((count(&third), angle(third.state())), (before + 1, 77.0));
     send(&mut third, Command::Undo);
-    assert!(count(&third) == before + 1 && angle(&third) != 77.0);
+    assert!(count(&third) == before + 1 && angle(third.state()) != 77.0);
     send(&mut third, Command::Undo);
     assert_eq!(count(&third), before);
     send(&mut third, Command::Undo);
     assert_eq!(third.state().shown_document().stage().unwrap().id, "glass-schlick");
-    third.get_by_label("Delete it").click();
-    third.run_steps(3);
-    third.state_mut().on_exit(None);
-    drop(third);
-    let left = std::fs::read_dir(state.path()).unwrap().map(|entry| entry.unwrap().file_name());
-    let left: Vec<_> = left.filter(|name| name.to_str().unwrap().starts_with("recovered")).collect();
-    assert!(left.is_empty(), "{left:?}");
 }
 
 /// In order or not, and whatever was on the screen: the next window has a title bar.
@@ -209,38 +260,31 @@ fn what_show_me_shows_is_not_remembered() {
     assert_eq!(remembering("--device cpu", &stored).state().show(), Show::Picture);
 }
 
+/// Rendering continues meanwhile. What is obstructed is the folder of the films, then the file of the edits.
 #[test]
-fn failed_autosave_is_reported_and_rendering_continues() {
+fn what_could_not_be_written_is_said_and_tried_again() {
     let state = tempfile::tempdir().unwrap();
-    // Nothing can be written where a folder is.
-    std::fs::create_dir_all(state.path().join("autosave.exr/full")).unwrap();
-    let mut harness = window(&format!("{PICTURE} --samples 4000000000"), state.path(), 0);
-    let told = "Autosave failed: ";
-    until(&mut harness, told, says(told));
-    let samples = harness.state().status().samples_per_pixel;
-    until(&mut harness, "more samples", |window| window.status().samples_per_pixel > samples);
-}
-
-/// The message says so. The program does not do it yet: it forgets that the last save failed.
-#[test]
-#[should_panic(expected = "was not tried again")]
-fn a_failed_autosave_of_a_finished_film_is_tried_again() {
-    let state = tempfile::tempdir().unwrap();
-    let film = state.path().join("autosave.exr");
-    std::fs::create_dir_all(film.join("full")).unwrap();
+    let (folder, edits) = (state.path().join("films"), state.path().join("edits.json"));
+    std::fs::write(&folder, "").unwrap();
     let mut harness = window(&format!("{PICTURE} --samples 40"), state.path(), 0);
-    let has_ended = |window: &Window| window.status().phase.is_over() && says("Autosave failed")(window);
-    until(&mut harness, "the end", has_ended);
-    let mut wait = || {
-        for _ in 0..100 {
-            std::thread::sleep(Duration::from_millis(5));
-            harness.step();
-        }
-    };
-    wait();
-    std::fs::remove_dir_all(&film).unwrap();
-    wait();
-    assert!(film.is_file(), "it was not tried again");
+    make_long(&mut harness);
+    until(&mut harness, "the end", |window| {
+        window.status().phase.is_over() && says("Autosave failed: ")(window)
+    });
+    std::fs::remove_file(&folder).unwrap();
+    until(&mut harness, "the film", |window| {
+        films(state.path()).len() == 1 && !says("Autosave failed")(window)
+    });
+
+    std::fs::remove_file(&edits).unwrap();
+    std::fs::create_dir_all(edits.join("full")).unwrap();
+    harness.state_mut().document_mut().camera.vfov_degrees = 77.0;
+    until(&mut harness, "a failure", says("Autosave failed: "));
+    std::fs::remove_dir_all(&edits).unwrap();
+    until(&mut harness, "the edits", |window| {
+        let text = std::fs::read_to_string(&edits).unwrap_or_default();
+        text.contains("77.0") && !says("Autosave failed")(window)
+    });
 }
 
 #[derive(Default)]

@@ -6,5 +6,5 @@ mod snapshot;
 mod table;
 
 pub use requests::{PanelContext, Requests};
-pub use snapshot::{Snapshot, Verdict};
+pub use snapshot::{Films, Snapshot, Verdict};
 pub use table::{Command, MENUS, ROWS, Row};

@@ -3,6 +3,7 @@
 use crate::app::model::{Document, Model};
 use crate::progressive::{Phase, Status, Stop};
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Whether two pictures differ by more than noise, in two sentences.
 #[derive(Clone)]
@@ -11,6 +12,15 @@ pub struct Verdict {
     pub is_equal: Option<bool>,
     pub headline: &'static str,
     pub words: String,
+}
+
+/// The films that are kept in files.
+#[derive(Clone, Copy, Default)]
+pub struct Films {
+    pub count: usize,
+    pub bytes: u64,
+    /// How long it took to write the last one.
+    pub took: Duration,
 }
 
 /// A snapshot of the window at the start of the frame.
@@ -25,6 +35,8 @@ pub struct Snapshot {
     pub verdict: Option<Verdict>,
     /// Seconds of tracing that the film's samples took before this run, if known.
     pub seconds_before: Option<f64>,
+    /// The films that are kept.
+    pub films: Films,
     /// What Undo and Redo would change.
     pub undo: Option<&'static str>,
     pub redo: Option<&'static str>,

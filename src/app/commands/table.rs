@@ -316,8 +316,8 @@ table! {
     RenderAtSize "Render at this size",
         "Renders one pixel of the picture per pixel of the screen; the samples begin anew", unlisted();
     StopSaving "Stop", "Gives up what is being made", unlisted();
-    Recover "Resume", "Shows it, and adds more samples", unlisted();
-    DeleteLeft "Delete it", "Deletes what the last window has left", unlisted();
+    DeleteFilms "Delete the kept films", "Pictures that come back begin anew then",
+        needs(|f| f.films.count > 0, "No film is kept"), unlisted();
     NextRay "Next ray", "", key(Key::ArrowRight), needs(|f| f.has_paths, NO_PATHS), unlisted();
     PreviousRay "Previous ray", "", key(Key::ArrowLeft), needs(|f| f.has_paths, NO_PATHS), unlisted();
     ClearPaths "Close the paths", "", unlisted();

@@ -1,9 +1,9 @@
 //! Saves and opens files without blocking the window's thread: the render thread, which has the film, writes; a
 //! separate thread reads. A size that is not on the screen is rendered first, beside the picture.
 
-pub mod autosave;
 pub mod edits;
 pub mod scene_file;
+pub mod store;
 
 use crate::app::commands::Command;
 use crate::app::model::Document;
@@ -15,8 +15,7 @@ use crate::denoise::{self, Denoised};
 use crate::film::Film;
 use crate::job::output::{Description, OutputFormat, is_named_picture, key, write_image};
 use crate::job::recipe::file;
-use crate::job::render::RenderJob;
-use crate::job::saved::{Kind, OpenError, Saved, SavedFilm, open, resume};
+use crate::job::saved::{Kind, OpenError, Saved, SavedFilm, open};
 use crate::progressive::describe::{counted, describe};
 use crate::progressive::{Phase, Status};
 use crate::system::console;
@@ -29,16 +28,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
-
-/// The film that the window resumes at startup.
-pub struct Resumed {
-    /// The file.
-    pub path: PathBuf,
-    /// The document shown when the film was requested.
-    pub begun: Document,
-    /// The film that was read.
-    pub film: SavedFilm,
-}
 
 /// A file that the window shows.
 pub struct Opened {
@@ -69,8 +58,6 @@ struct Making {
 #[derive(Default)]
 pub struct Files {
     pub scene_file: SceneFile,
-    /// The film of the command line, to resume.
-    pub pending_resume: Option<(PathBuf, RenderJob)>,
     /// To be saved once there are samples.
     pub pending_save: Option<(OutputFormat, PathBuf)>,
     /// To be copied once there are samples.
@@ -82,8 +69,6 @@ pub struct Files {
     making: Option<Making>,
     /// Files that were opened, and pictures of other programs, which say nothing about how they were made.
     pub opened: Answers<Result<Opened, PathBuf>>,
-    /// Films to resume.
-    pub resumed: Answers<Resumed>,
     /// Pictures for the clipboard, and what they are, in words.
     pub copied: Answers<(ColorImage, String)>,
 }
@@ -225,7 +210,7 @@ impl Files {
     /// Writes the film on the screen at the next end of a pass.
     pub fn save(&mut self, context: &Context, subject: &Subject<'_>, named: (OutputFormat, PathBuf)) {
         let (document, tracing) = (subject.document.clone(), subject.tracing);
-        let describe = describer(&document, tracing.main.status(), tracing.seconds_before);
+        let describe = describer(&document, tracing.main.status(), tracing.main.seconds_before);
         let answer = self.saved.promise(context);
         let is_denoised = subject.denoised.is_some();
         let work = move |film: &Film| write(film, is_denoised, &document, describe, named);
@@ -279,16 +264,6 @@ impl Files {
             Err(error) => Err(error.to_string()),
         };
         self.opened.ask("files", context, work);
-    }
-
-    /// Reads the film of `job`, which is the job of `document`.
-    pub fn resume(&mut self, context: &Context, path: PathBuf, job: RenderJob, document: &Document) {
-        let begun = document.clone();
-        let work = move || match resume(&path, &job) {
-            Ok(film) => Ok(Resumed { path, begun, film }),
-            Err(error) => Err(error.to_string()),
-        };
-        self.resumed.ask("files", context, work);
     }
 }
 

@@ -220,14 +220,6 @@ impl Document {
             && self.settings == other.settings
     }
 
-    /// Whether the samples of one are also those of the other, wherever the two come from.
-    pub fn is_same_picture(&self, other: &Document) -> bool {
-        let looks_same = self.origin.source == other.origin.source
-            && self.acting_camera() == other.acting_camera()
-            && self.settings == other.settings;
-        looks_same && (self.has_same_film(other) || self.job(1).ok() == other.job(1).ok())
-    }
-
     /// The recipe of the picture.
     pub fn recipe(&self) -> Recipe {
         let origin = &self.origin.recipe;

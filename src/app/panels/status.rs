@@ -195,7 +195,7 @@ pub fn share(snapshot: &Snapshot) -> Option<f64> {
     [of_samples, of_time, of_error].into_iter().flatten().reduce(f64::max).map(|share| share.clamp(0.0, 1.0))
 }
 
-fn details(ui: &mut Ui, snapshot: &Snapshot) {
+fn details(ui: &mut Ui, cx: &PanelContext) {
     let response = ui.add(Button::new("Details"));
     egui::Popup::from_toggle_button_response(&response)
         .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
@@ -205,7 +205,7 @@ fn details(ui: &mut Ui, snapshot: &Snapshot) {
             ui.set_width(304.0);
             egui::Frame::new().inner_margin(12).show(ui, |ui| {
                 ui.label(RichText::new("Details").strong());
-                for (name, value) in figures(snapshot) {
+                for (name, value) in figures(cx) {
                     ui.horizontal(|ui| {
                         small(ui, name);
                         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -213,6 +213,7 @@ fn details(ui: &mut Ui, snapshot: &Snapshot) {
                         });
                     });
                 }
+                command_button(ui, cx, Command::DeleteFilms, "Delete");
                 small(ui, TERMS);
             });
         });
@@ -237,6 +238,10 @@ fn figures(snapshot: &Snapshot) -> Vec<(&'static str, String)> {
         ("Processor", processors(status).unwrap_or_else(unknown)),
         ("Lanes of the CPU", lanes.unwrap_or_else(unknown)),
         ("Memory of this picture", format!("{:.1} MB", bytes as f64 / 1e6)),
+        (
+            "Kept films",
+            format!("{}, {:.0} MB of 2,000", snapshot.films.count, snapshot.films.bytes as f64 / 1e6),
+        ),
     ]
 }
 

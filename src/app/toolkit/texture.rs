@@ -1,13 +1,15 @@
 //! A picture as a texture of the window.
 
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 
 /// A picture, and its texture once it was drawn.
 pub struct Texture {
     image: Arc<ColorImage>,
     handle: RefCell<Option<(TextureHandle, TextureOptions)>>,
+    /// The texture still has an earlier picture.
+    is_stale: Cell<bool>,
 }
 
 impl Texture {
@@ -15,10 +17,7 @@ impl Texture {
     pub fn new([width, height]: [u32; 2], rgb8: &[u8], earlier: Option<Texture>) -> Self {
         let image = Arc::new(ColorImage::from_rgb([width as usize, height as usize], rgb8));
         let handle = RefCell::new(earlier.and_then(|earlier| earlier.handle.into_inner()));
-        if let Some((handle, options)) = &mut *handle.borrow_mut() {
-            handle.set(Arc::clone(&image), *options);
-        }
-        Texture { image, handle }
+        Texture { image, handle, is_stale: Cell::new(true) }
     }
 
     /// Pixels across and down.
@@ -38,22 +37,28 @@ impl Texture {
 
     /// The texture for drawing, with square or smoothed pixels.
     pub fn id(&self, context: &Context, options: TextureOptions) -> TextureId {
-        match &mut *self.handle.borrow_mut() {
-            Some((handle, old)) => {
-                if *old != options {
-                    handle.set(Arc::clone(&self.image), options);
-                    *old = options;
-                }
-                handle.id()
-            }
-            empty => {
-                let handle = context.load_texture("picture", Arc::clone(&self.image), options);
-                let id = handle.id();
-                *empty = Some((handle, options));
-                id
-            }
+        let mut slot = self.handle.borrow_mut();
+        let is_stale = self.is_stale.replace(false) || slot.as_ref().is_some_and(|(_, old)| *old != options);
+        let fitting = || fitting(&self.image, context.input(|input| input.max_texture_side));
+        let (handle, old) =
+            slot.get_or_insert_with(|| (context.load_texture("picture", fitting(), options), options));
+        if is_stale {
+            handle.set(fitting(), options);
+            *old = options;
         }
+        handle.id()
     }
+}
+
+/// The picture with sides of at most `limit` pixels: of larger ones, a device shows every second pixel, or fewer.
+fn fitting(image: &Arc<ColorImage>, limit: usize) -> Arc<ColorImage> {
+    let [across, down] = image.size.map(|side| side.div_ceil(limit));
+    if across <= 1 && down <= 1 {
+        return Arc::clone(image);
+    }
+    let rows = image.pixels.chunks(image.width()).step_by(down);
+    let pixels = rows.flat_map(|row| row.iter().step_by(across).copied()).collect();
+    Arc::new(ColorImage::new([image.width().div_ceil(across), image.height().div_ceil(down)], pixels))
 }
 
 #[cfg(test)]
@@ -85,8 +90,23 @@ mod tests {
         );
         uploaded.clear();
         let second = Texture::new([1, 3], &[0; 9], Some(first));
-        assert_eq!(known(id).map(|(size, _)| size), Some([1, 3]), "it is uploaded at once");
         assert_eq!(second.id(&context, smooth), id);
+        assert_eq!(known(id).map(|(size, _)| size), Some([1, 3]));
+        context.tex_manager().write().take_delta().clear();
+    }
+
+    #[test]
+    fn a_picture_that_is_too_wide_for_the_device_is_shown_smaller() {
+        let context = Context::default();
+        let limit = context.input(|input| input.max_texture_side) as u32;
+        let rgb8: Vec<u8> = (0..(3 * limit + 1) * 2).flat_map(|at| [at as u8; 3]).collect();
+        let wide = Texture::new([3 * limit + 1, 2], &rgb8, None);
+        let id = wide.id(&context, TextureOptions::NEAREST);
+        let size = context.tex_manager().read().meta(id).map(|meta| meta.size);
+        let [width, height] = size.unwrap();
+        assert!(width <= limit as usize && width > limit as usize / 2 && height == 2, "{width}");
+        assert_eq!(wide.size(), [3 * limit + 1, 2]);
+        assert_eq!(wide.colour([3 * limit, 1]).unwrap()[0], rgb8[rgb8.len() - 1], "its numbers are there");
         context.tex_manager().write().take_delta().clear();
     }
 }

@@ -9,14 +9,14 @@ pub mod tracer;
 
 use crate::app::model::changes::Changes;
 use crate::app::model::{Device, Document, Model, Partner, Sizing};
-use crate::app::toolkit::{Answers, Toasts};
-use crate::film::Film;
+use crate::app::toolkit::Toasts;
+use crate::job::saved::SavedFilm;
 use crate::progressive::{Phase, Status, Stop};
 use eframe::egui::{Context, Vec2};
 use second::{Other, Second};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use tracer::{Tracer, Want};
+use tracer::{LONG_SECONDS, Left, Tracer, Want};
 
 /// Longer than the time between two pictures.
 const PICTURES_APART: Duration = Duration::from_millis(300);
@@ -24,33 +24,18 @@ const PICTURES_APART: Duration = Duration::from_millis(300);
 /// A new size counts once it has stayed the same for so long: a window that is resized has many sizes.
 const SETTLE: Duration = Duration::from_millis(250);
 
-/// A picture that was traced for longer than this many seconds is kept.
-const LONG_SECONDS: f64 = 10.0;
-
 pub struct Tracing {
     pub main: Tracer,
     /// Traces what the picture is compared with.
     pub second: Second,
     pub sizer: Sizer,
-    /// Tracing time of the film's samples from before this run; none if it is not known.
-    pub seconds_before: Option<f64>,
     /// The film with which the next run begins.
-    pub film: Option<Film>,
-    /// The last picture that was left after it had been traced for long.
-    left: Option<Left>,
+    pub film: Option<SavedFilm>,
     /// Why the document cannot be rendered; `None` if it can.
     pub invalid: Option<String>,
     /// The run, and how many of its messages and failures have been seen.
     seen: (u64, usize, usize),
     turn: Option<Turn>,
-}
-
-/// A picture that was left for another one. One that comes back to it finds its samples.
-struct Left {
-    document: Document,
-    film: Answers<Film>,
-    /// Tracing time of its samples, if known.
-    seconds: Option<f64>,
 }
 
 /// Two devices trace in turns, so that neither has processors of the other and the speeds of both are true.
@@ -70,18 +55,11 @@ impl Tracing {
             main: Tracer::new()?,
             second: Second::default(),
             sizer: Sizer::default(),
-            seconds_before: Some(0.0),
             film: None,
-            left: None,
             invalid: None,
             seen: (0, 0, 0),
             turn: None,
         })
-    }
-
-    /// Tracing time of the film's samples, if known.
-    pub fn seconds(&self) -> Option<f64> {
-        Some(self.seconds_before? + self.main.status().trace.as_secs_f64())
     }
 
     fn tracers(&self) -> impl Iterator<Item = &Tracer> {
@@ -100,8 +78,6 @@ impl Tracing {
 
     /// Throws the samples away and begins anew.
     pub fn restart(&mut self) {
-        self.seconds_before = Some(0.0);
-        self.left = None;
         self.main.started = None;
         self.second.tracer.iter_mut().for_each(|tracer| tracer.started = None);
     }
@@ -119,32 +95,16 @@ impl Tracing {
         self.second.other(model, &self.main)
     }
 
-    /// Keeps the film of the picture, which is about to be left.
-    pub fn keep(&mut self) {
-        let Some(document) = self.main.started.as_ref().map(|run| run.document().clone()) else { return };
-        if self.main.has_samples(&document) {
-            let mut film = Answers::default();
-            // Nothing is drawn when it arrives.
-            let answer = film.answer(&Context::default());
-            self.main.inspect(move |film| answer.give(film.try_copy().map_err(|error| error.to_string())));
-            self.left = Some(Left { document, film, seconds: self.seconds() });
-        }
+    /// The films to keep of the pictures that were left since the last call.
+    pub fn take_left(&mut self) -> Vec<Left> {
+        let of_second = self.second.tracer.iter_mut().flat_map(|tracer| tracer.left.drain(..));
+        self.main.left.drain(..).chain(of_second).collect()
     }
 
-    /// If the picture that is traced is left for `document`, keeps its film if that was traced for long. If `document` was
-    /// left before, returns the film of then, and its tracing time.
-    pub fn leave(&mut self, document: &Document) -> Option<(Film, Option<f64>)> {
-        let traced = self.main.started.as_ref()?.document();
-        if traced.has_same_film(document) {
-            return None;
-        }
-        let is_kept = self.left.as_ref().is_some_and(|left| left.document.has_same_film(traced));
-        let back = self.left.take_if(|left| left.document.is_same_picture(document));
-        if !is_kept && self.seconds().is_none_or(|seconds| seconds > LONG_SECONDS) {
-            self.keep();
-        }
-        let Left { mut film, seconds, .. } = back?;
-        Some((film.wait()?.ok()?, seconds))
+    /// Leaves all pictures.
+    pub fn leave(&mut self) {
+        self.main.leave();
+        self.second.tracer.iter_mut().for_each(Tracer::leave);
     }
 
     /// Gives the document the size that fits the window, unless its samples are worth more or are needed.
@@ -153,7 +113,7 @@ impl Tracing {
             return;
         }
         let is_presented = model.presentation.is_some();
-        let seconds = match self.seconds() {
+        let seconds = match self.main.seconds() {
             _ if is_needed => f64::INFINITY,
             // A presentation begins with a picture of its own size, whatever that costs.
             _ if is_presented => 0.0,

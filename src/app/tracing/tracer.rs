@@ -5,11 +5,16 @@ use crate::app::model::Document;
 use crate::app::toolkit::Texture;
 use crate::backends::BackendChoice;
 use crate::film::Film;
+use crate::job::saved::SavedFilm;
 use crate::progressive::{Plan, Progressive, RenderRequest, Status, Stop, View};
 use eframe::egui;
 use std::io;
 use std::sync::Arc;
+use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
+
+/// A film that was traced for longer than this many seconds is kept.
+pub const LONG_SECONDS: f64 = 10.0;
 
 /// Target duration of a pass while the user moves something.
 const MOVING_PASS: Duration = Duration::from_millis(10);
@@ -71,6 +76,14 @@ impl Started {
     }
 }
 
+/// A film to keep, which the render thread gives when its pass has ended.
+pub struct Left {
+    pub document: Document,
+    /// Tracing time of its samples from before its last run, if known.
+    pub seconds_before: Option<f64>,
+    pub film: Receiver<(Film, Status)>,
+}
+
 /// A picture on the screen.
 pub struct Shown {
     /// The texture of the picture.
@@ -89,6 +102,10 @@ pub struct Shown {
 pub struct Tracer {
     pub progressive: Progressive,
     pub started: Option<Started>,
+    /// Tracing time of the film's samples from before this run; none if it is not known.
+    pub seconds_before: Option<f64>,
+    /// Films to keep of pictures that are no longer traced.
+    pub left: Vec<Left>,
     shown: Option<Shown>,
     status: Arc<Status>,
     asked: Instant,
@@ -103,6 +120,8 @@ impl Tracer {
         Ok(Tracer {
             progressive: Progressive::spawn()?,
             started: None,
+            seconds_before: Some(0.0),
+            left: Vec::new(),
             shown: None,
             status: Arc::default(),
             asked: Instant::now(),
@@ -172,10 +191,37 @@ impl Tracer {
         self.is_full(document) && self.status.samples_per_pixel > 0
     }
 
-    /// Takes the film, and waits for the end of its pass. The next request starts a new one.
-    pub fn take_film(&mut self) -> Option<Film> {
+    /// Tracing time of the film's samples, if known.
+    pub fn seconds(&self) -> Option<f64> {
+        Some(self.seconds_before? + self.status.trace.as_secs_f64())
+    }
+
+    /// The full-size picture that is traced, if its film has taken long enough to be kept.
+    fn long(&self) -> Option<&Document> {
+        let document = &self.started.as_ref()?.document;
+        let is_long = self.seconds().is_none_or(|seconds| seconds > LONG_SECONDS);
+        (is_long && self.has_samples(document)).then_some(document)
+    }
+
+    /// A copy of the film, if it has taken long enough to be kept.
+    pub fn copy_long(&self) -> Option<Left> {
+        let (document, (sender, film), status) =
+            (self.long()?.clone(), channel(), Status::clone(&self.status));
+        self.inspect(move |film| match film.try_copy() {
+            Ok(copy) => _ = sender.send((copy, status)),
+            Err(error) => log::warn!("the film is not saved meanwhile: {error}"),
+        });
+        Some(Left { document, seconds_before: self.seconds_before, film })
+    }
+
+    /// Ends the render. Its film is kept if it has taken long enough.
+    pub fn leave(&mut self) {
+        if let Some(document) = self.long().cloned() {
+            let (sender, film) = channel();
+            self.progressive.hand_over(move |film, status| _ = sender.send((film, status)));
+            self.left.push(Left { document, seconds_before: self.seconds_before, film });
+        }
         self.started = None;
-        self.progressive.take_film()
     }
 
     /// Runs `look` with the film on the render thread.
@@ -185,7 +231,8 @@ impl Tracer {
 
     /// Stops rendering until the next request.
     pub fn abandon(&mut self) {
-        if self.started.take().is_some() {
+        if self.started.is_some() {
+            self.leave();
             self.progressive.abandon();
             self.shown = None;
         }
@@ -244,7 +291,7 @@ impl Tracer {
     ///
     /// # Errors
     /// Why the document cannot be rendered; the current render continues.
-    pub fn want(&mut self, want: &Want<'_>, film: Option<Film>) -> Result<(), String> {
+    pub fn want(&mut self, want: &Want<'_>, film: Option<SavedFilm>) -> Result<(), String> {
         self.look(&want.view);
         if film.is_some() {
             return self.start(want, Preview::NONE, film);
@@ -283,8 +330,11 @@ impl Tracer {
         }
     }
 
-    fn start(&mut self, want: &Want<'_>, preview: Preview, film: Option<Film>) -> Result<(), String> {
+    fn start(&mut self, want: &Want<'_>, preview: Preview, film: Option<SavedFilm>) -> Result<(), String> {
         let job = want.document.job(preview.divisor).map_err(|error| error.to_string())?;
+        self.leave();
+        let (film, seconds) = film.map_or((None, Some(0.0)), |saved| (Some(saved.film), saved.seconds));
+        self.seconds_before = seconds;
         let plan = want.plan(want.is_paused, preview);
         let request = RenderRequest { film, ..RenderRequest::new(job, want.backend.clone(), plan.clone()) };
         self.progressive.start(request);

@@ -10,7 +10,7 @@ mod shell;
 use crate::app::commands::{Command, Snapshot};
 use crate::app::dialogs::Dialog;
 use crate::app::files::Files;
-use crate::app::files::autosave::{Autosave, Last};
+use crate::app::files::store::{Last, Store};
 use crate::app::model::changes::Changes;
 use crate::app::model::{Device, DeviceOptions, Document, Model, Origin, Source, Stored, Tab, ViewState};
 use crate::app::toolkit::theme;
@@ -36,7 +36,7 @@ pub struct Window {
     pub display: Display,
     pub tools: Tools,
     pub files: Files,
-    pub autosave: Autosave,
+    pub store: Store,
     pub shell: Shell,
     /// Commands to run in this frame.
     pub commands: Vec<Command>,
@@ -68,27 +68,32 @@ impl Window {
             remembered.mine_stage = None;
             (remembered.has_info, remembered.tab) = (true, Tab::Check);
         }
-        let goes_on = !options.is_fresh && !options.is_picture_given;
         let directory = options.state_directory.as_deref();
-        let (autosave, Last { steps, film, has_ended_early }) =
-            Autosave::new(directory, options.autosave_every, goes_on);
+        let (mut store, Last { steps, has_ended_early, has_hardly_begun }) =
+            Store::open(directory, options.autosave_every);
+        let is_asked_for = options.is_fresh || options.is_picture_given;
+        let goes_on = !is_asked_for && !has_hardly_begun;
         let mut document = match steps.last() {
-            Some(document) => document.clone(),
-            None if options.is_picture_given => document_of(&options),
-            None => Document::new(Origin::usual()),
+            Some(document) if goes_on => document.clone(),
+            _ if options.is_picture_given => document_of(&options),
+            _ => Document::new(Origin::usual()),
         };
         document.stop = options.stop.unwrap_or(document.stop);
-        let mut files = Files::default();
-        files.pending_resume = match (options.resume, film) {
-            (Some(path), _) => Some((path, options.recipe.job()?)),
-            (None, Some(path)) => Some((path, document.job(1)?)),
-            (None, None) => None,
-        };
+        if let Some(path) = options.resume {
+            store.named = Some((path, options.recipe.job()?));
+        }
         let mut shell = Shell::default();
-        if has_ended_early && !steps.is_empty() {
+        if has_hardly_begun && !is_asked_for {
+            if !options.is_device_given {
+                remembered.device = Device::default();
+            }
+            let words = "The last window ended soon after it began. This one begins without its picture";
+            let offers: &[_] = if steps.is_empty() { &[] } else { &[Command::Undo] };
+            shell.toasts.offer(words, offers);
+        } else if has_ended_early && goes_on && !steps.is_empty() {
             shell.toasts.good("The last window ended early. This is the picture that it showed");
         }
-        let view = if options.is_fresh || options.is_picture_given { ViewState::default() } else { view };
+        let view = if goes_on { view } else { ViewState::default() };
         Ok(Window {
             changes: Changes::of_steps(&steps, document.clone()),
             model: Model {
@@ -106,8 +111,8 @@ impl Window {
             tracing: Tracing::new().context("cannot start the render thread")?,
             display: Display::default(),
             tools: Tools::default(),
-            files,
-            autosave,
+            files: Files::default(),
+            store,
             shell,
             commands: Vec::new(),
         })
@@ -129,7 +134,8 @@ impl Window {
             status: self.tracing.main.status().clone(),
             other: self.tracing.other_status(&self.model),
             verdict: self.display.kept.verdict(&self.model, &self.tracing),
-            seconds_before: self.tracing.seconds_before,
+            seconds_before: self.tracing.main.seconds_before,
+            films: self.store.films(),
             undo,
             redo,
             is_coarse: self.tracing.main.is_coarse(),
@@ -174,10 +180,7 @@ impl Window {
         // A frame can take long while the device prepares a large scene.
         context.options_mut(|options| options.input_options.max_click_duration = 5.0);
         self.tracing.main.wake(context);
-        if let Some((path, job)) = self.files.pending_resume.take() {
-            self.files.resume(context, path, job, &self.model.document);
-        }
-        self.offer_left();
+        self.store.begin(context);
     }
 
     fn take_input(&mut self, context: &egui::Context) {
@@ -256,13 +259,10 @@ impl Window {
         }
         let room = self.display.viewport.room_pixels;
         // The dock opens when devices are compared, but their films stay.
-        let needs_film =
-            self.files.needs_film() || self.autosave.is_restoring || self.model.other_device().is_some();
+        let needs_film = self.files.needs_film() || self.model.other_device().is_some();
         self.tracing.follow_size(context, &mut self.model, room, needs_film);
         self.follow_check();
-        self.find_left();
         if self.changes.follow(context, &self.model.document) {
-            self.tracing.seconds_before = Some(0.0);
             self.model.view.end_look();
         }
         let is_moving = self.changes.is_moving();
@@ -271,7 +271,8 @@ impl Window {
         }
         self.leave_useless_views();
         let has_second = self.tracing.follow(context, &self.model, &self.changes);
-        let Window { model, changes, tracing, display, tools, files, autosave, shell, .. } = self;
+        self.store.follow(context, &self.model, &self.changes, &mut self.tracing);
+        let Window { model, tracing, display, tools, files, shell, .. } = self;
         display.follow(context, model, is_moving, &mut shell.toasts);
         let subject = Subject::new(&model.view, &model.document, tracing);
         if let Some(found) = display.denoising.follow(context, &subject, model.view.is_denoised) {
@@ -280,13 +281,6 @@ impl Window {
         let subject = Subject::new(&model.view, &model.document, tracing);
         files.follow(context, &subject);
         files.follow_making(context, &mut shell.toasts);
-        if let Some(reason) = autosave.follow(context, (&model.document, changes), tracing) {
-            let words = format!("Autosave failed: {reason}. Rendering continues; the next save will retry");
-            shell.toasts.bad(words);
-        }
-        if !autosave.has_failed() {
-            shell.toasts.end_error("Autosave failed");
-        }
         tools.follow(context, model, &subject);
         if !has_second {
             model.view.end_comparison();
@@ -327,8 +321,7 @@ impl Window {
         self.stop_play();
         self.files.end();
         self.end_check();
-        self.find_left();
-        self.autosave.end(&self.model, &self.changes, &mut self.tracing);
+        self.store.end(&self.model.document, &self.changes, &mut self.tracing);
     }
 }
 

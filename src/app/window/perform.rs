@@ -6,7 +6,6 @@ use crate::app::commands::{Command, MENUS, Snapshot};
 use crate::app::dialogs::{
     Dialog, LargeSize, Outcome, Purpose, SaveBox, Wanted, What, default_folder, samples_wanted, stage_list,
 };
-use crate::app::files::edits;
 use crate::app::model::animation::{FRAMES_PER_SECOND, Play};
 use crate::app::model::spheres::grip::new_body;
 use crate::app::model::spheres::{self, Selected};
@@ -15,13 +14,13 @@ use crate::app::model::{
     Tab, Tone, companion, navigation,
 };
 use crate::app::toolkit::Finder;
-use crate::app::toolkit::widgets::{focus, samples_words};
+use crate::app::toolkit::widgets::focus;
 use crate::app::viewport::sight::Sight;
 use crate::batch::{FrameNames, FramesOptions};
-use crate::film::Film;
 use crate::job::output::OutputFormat;
 use crate::job::recipe::Recipe;
 use crate::job::recipe::file::sphere_to_toml;
+use crate::job::saved::SavedFilm;
 use crate::stages::{BOOK_URL, Stage};
 use crate::system::terminal::ProgressChoice;
 use eframe::egui::{self, Context, ViewportCommand};
@@ -80,11 +79,7 @@ impl Window {
             C::CopyPicture => files.pending_copy = true,
             C::Quit => context.send_viewport_cmd(ViewportCommand::Close),
             C::StopSaving => files.stop_saving(),
-            C::Recover => self.recover(context),
-            C::DeleteLeft => {
-                self.autosave.delete_offered();
-                self.offer_left();
-            }
+            C::DeleteFilms => self.store.delete(None),
 
             C::Undo => self.undo(),
             C::Redo => self.redo(),
@@ -156,6 +151,7 @@ impl Window {
                     tracing.resume();
                 }
                 tracing.restart();
+                self.store.delete(Some(document.clone()));
             }
             C::RenderAtSize => {
                 document.has_own_size = false;
@@ -439,9 +435,6 @@ impl Window {
             return;
         }
         self.end_sight();
-        if begun.is_none() {
-            self.tracing.keep();
-        }
         let before = begun.map_or_else(|| self.document().clone(), |[before, _]| before);
         let tab = self.model.remembered.tab;
         let mut document = self.fresh(Origin::of_stage(stage));
@@ -623,25 +616,17 @@ impl Window {
             Ok(film) => {
                 self.show_document(Document { has_own_size: true, ..document });
                 self.model.view.end_comparison();
-                self.adopt(film, kept.seconds);
+                self.adopt(SavedFilm { film, seconds: kept.seconds });
             }
             Err(error) => self.shell.toasts.bad(error.to_string()),
         }
     }
 
-    /// Goes on with the film of a picture that was left before and is shown again.
-    pub(super) fn find_left(&mut self) {
-        if self.tracing.film.is_none()
-            && let Some((film, seconds)) = self.tracing.leave(&self.model.document)
-        {
-            self.adopt(film, seconds);
-        }
-    }
-
-    pub(super) fn adopt(&mut self, film: Film, seconds: Option<f64>) {
-        // What was traced until now may be worth keeping.
-        drop(self.tracing.leave(&self.model.document));
-        (self.tracing.film, self.tracing.seconds_before) = (Some(film), seconds);
+    /// Goes on with a film of the document.
+    pub(super) fn adopt(&mut self, film: SavedFilm) {
+        self.tracing.film = Some(film);
+        self.store.sought = Some(self.model.document.clone());
+        // That is no change, after which a comparison would end.
         self.changes.last = self.model.document.clone();
     }
 
@@ -745,30 +730,6 @@ impl Window {
             self.model.document.has_own_size = before.1;
             self.shell.dialogs.open(Dialog::Large(large));
         }
-    }
-
-    /// Offers what an earlier window has left, if the user has not answered yet.
-    pub(super) fn offer_left(&mut self) {
-        let Some((document, samples)) = self.autosave.offer() else { return };
-        let name = document.place();
-        let what = match samples {
-            Some(samples) => format!("{name} with {}", samples_words(samples)),
-            None => format!("{name} with your changes"),
-        };
-        let words = format!("An earlier window has left {what}.");
-        self.shell.toasts.offer(words, &[Command::Recover, Command::DeleteLeft]);
-    }
-
-    fn recover(&mut self, context: &Context) {
-        let Some(path) = self.autosave.take_offered() else { return };
-        match edits::read(&path).pop() {
-            Some(document) => {
-                self.show_document(document);
-                self.shell.toasts.good(format!("Resumed {}", self.document().place()));
-            }
-            None => self.files.open(context, path),
-        }
-        self.offer_left();
     }
 
     pub(super) fn open_recent(&mut self, context: &Context, place: usize) {

@@ -2,7 +2,8 @@
 
 use super::Window;
 use crate::app::commands::Command;
-use crate::app::files::{Made, Opened, Resumed, name_of};
+use crate::app::files::store::Found;
+use crate::app::files::{Made, Opened, name_of};
 use crate::app::model::{Document, Kept, Origin, Partner, Source};
 use crate::job::saved::Kind;
 use crate::progressive::Stop;
@@ -55,9 +56,13 @@ impl Window {
                 self.model.view.compare_with(partner);
             }
         }
-        while let Some(outcome) = self.files.resumed.take() {
-            self.settle("Not resumed", outcome).into_iter().for_each(|resumed| self.go_on(resumed));
-            self.autosave.is_restoring = false;
+        while let Some(outcome) = self.store.found.take() {
+            self.settle("Not resumed", outcome).into_iter().for_each(|found| self.go_on(found));
+        }
+        while let Some(outcome) = self.store.outcomes.take() {
+            let outcome =
+                outcome.map_err(|reason| format!("{reason}. Rendering continues; this is tried again"));
+            self.settle("Autosave failed", outcome);
         }
         if let Some(outcome) = self.shell.dialogs.chosen() {
             self.end_dialog(context, outcome);
@@ -77,7 +82,6 @@ impl Window {
     }
 
     fn show_opened(&mut self, Opened { saved, film }: Opened) {
-        let is_left = self.autosave.is_answered(&saved.path);
         let mut document = match saved.kind {
             Kind::Scene => Document::new(Origin::new(saved.recipe.clone(), Source::File(saved.path.clone()))),
             _ => Document::of_film(&saved.recipe, saved.stage()),
@@ -88,32 +92,34 @@ impl Window {
         }
         let path = saved.path;
         self.show_document(document);
-        self.shell.toasts.good(if is_left {
-            format!("Resumed {}", self.document().place())
-        } else {
-            self.model.remembered.note_recent(&path);
-            format!("Opened {}; its size and samples hold for this picture only", name_of(&path))
-        });
-        if let Some(film) = film {
-            self.adopt(film.film, film.seconds);
-        }
+        self.model.remembered.note_recent(&path);
+        let words = format!("Opened {}; its size and samples hold for this picture only", name_of(&path));
+        self.shell.toasts.good(words);
+        film.into_iter().for_each(|film| self.adopt(film));
     }
 
-    /// Goes on with a film, unless the picture has been changed meanwhile.
-    fn go_on(&mut self, Resumed { path, begun, film }: Resumed) {
-        let is_quiet = self.autosave.is_restoring;
-        if !self.document().has_same_film(&begun) {
-            if !is_quiet {
+    /// Goes on with a film, unless the picture has been changed meanwhile or has more samples.
+    fn go_on(&mut self, Found { document: sought, film, named }: Found) {
+        let document = &mut self.model.document;
+        let size = [film.film.width(), film.film.height()];
+        let is_same = document.has_same_film(&sought)
+            || size != sought.size() && !document.has_own_size && document.is_same_at_another_size(&sought);
+        let main = &self.tracing.main;
+        let samples = if main.is_full(document) { main.status().samples_per_pixel } else { 0 };
+        match named {
+            Some(path) if is_same => {
+                self.shell.toasts.good(format!("Resumed {}", document.place()));
+                self.model.remembered.note_recent(&path);
+            }
+            Some(path) => {
                 let words = "the picture was changed before it had been read; open the file to continue it";
                 self.shell.toasts.bad(format!("Not resumed from {}: {words}", path.display()));
+                return;
             }
-            return;
+            None if is_same && film.film.sample_count() >= samples => document.set_size(size),
+            None => return,
         }
-        self.adopt(film.film, film.seconds);
-        if !is_quiet {
-            self.shell.toasts.good(format!("Resumed {}", self.document().place()));
-            self.model.remembered.note_recent(&path);
-        }
+        self.adopt(film);
     }
 
     fn add_kept(&mut self, kept: Kept) {
