@@ -214,7 +214,9 @@ fn a_panic_saves_the_film() {
 #[test]
 fn last_edits_come_back_with_their_history() {
     let state = tempfile::tempdir().unwrap();
-    let first = window(PICTURE, state.path(), 3600);
+    let edits = state.path().join("edits.json");
+    let mut first = window(PICTURE, state.path(), 3600);
+    until(&mut first, "edits", |_| edits.exists());
     kill(first, state.path());
 
     // Also those from before a picture that was asked for.
@@ -225,7 +227,6 @@ fn last_edits_come_back_with_their_history() {
     second.run_steps(30);
     second.state_mut().document_mut().camera.vfov_degrees = 77.0;
     second.run_steps(30);
-    let edits = state.path().join("edits.json");
     until(&mut second, "the edits", |_| std::fs::read_to_string(&edits).unwrap().contains("77.0"));
     kill(second, state.path());
 

@@ -8,7 +8,7 @@ use crate::app::model::changes::Changes;
 use crate::app::model::{Document, Model, Sizing};
 use crate::app::toolkit::{Answer, Answers, caught};
 use crate::app::tracing::Tracing;
-use crate::app::tracing::tracer::Left;
+use crate::app::tracing::tracer::{Left, Tracer};
 use crate::film::{Checksum, Description, Film, checkpoint, key};
 use crate::job::recipe::{Recipe, file};
 use crate::job::render::RenderJob;
@@ -38,7 +38,8 @@ const FIRST_SECONDS: Duration = Duration::from_secs(5);
 /// The longest time before something that could not be written is tried again.
 const RETRY: Duration = Duration::from_secs(10);
 
-const EDITS: &str = "edits.json";
+/// Nor more than this many of them that could not be written.
+const WAITING: usize = 32;
 
 /// What the last window was at.
 #[derive(Default)]
@@ -61,11 +62,13 @@ pub struct Found {
 
 /// The window's side of the store.
 pub struct Store {
-    tasks: Sender<Task>,
+    /// Until the window ends.
+    tasks: Option<Sender<Task>>,
     thread: Option<JoinHandle<()>>,
     /// The right to save edits, which the first window has. Its file is there until the window ends in order, and has a
     /// byte during the first seconds.
-    lock: Option<(PathBuf, File)>,
+    lock: Option<(File, PathBuf)>,
+    edits: PathBuf,
     /// The end of the first seconds, until it is over.
     early: Option<Instant>,
     every: Duration,
@@ -91,39 +94,30 @@ impl Store {
     /// A store in `directory`; without one, films are in memory. Films that are traced are written at least `every` so
     /// often. Returns also what the last window was at.
     pub fn open(directory: Option<&Path>, every: Duration) -> (Self, Last) {
-        let (mut last, mut lock) = (Last::default(), None);
-        if let Some(directory) = directory.filter(|directory| fs::create_dir_all(directory).is_ok()) {
-            let path = directory.join("window.lock");
-            let left = fs::metadata(&path).ok();
-            lock = lock_path(&path, PATIENCE).ok().map(|file| (path, file));
-            if let Some((_, file)) = &lock {
-                last = Last {
-                    steps: edits::read(&directory.join(EDITS)),
-                    has_ended_early: left.is_some(),
-                    has_hardly_begun: left.is_some_and(|left| left.len() > 0),
-                };
-                let _ = file.set_len(1);
+        let is_there = |directory: &&Path| fs::create_dir_all(directory).is_ok();
+        let path = directory.filter(is_there).map(|directory| directory.join("window.lock"));
+        let left = path.as_ref().and_then(|path| fs::metadata(path).ok());
+        let lock = path.and_then(|path| Some((lock_path(&path, PATIENCE).ok()?, path)));
+        let edits = directory.unwrap_or(Path::new("")).join("edits.json");
+        let last = lock.as_ref().map_or_else(Last::default, |(file, _)| {
+            let _ = file.set_len(1);
+            Last {
+                steps: edits::read(&edits),
+                has_ended_early: left.is_some(),
+                has_hardly_begun: left.is_some_and(|left| left.len() > 0),
             }
-        }
-        let ((tasks, receiver), films, now) = (channel(), Arc::default(), Instant::now());
-        let shelf = Shelf {
-            directory: directory.map(Path::to_owned),
-            limit: LIMIT,
-            waiting: Vec::new(),
-            pause: every.clamp(Duration::from_millis(50), RETRY),
-            next: now,
-            films: Arc::clone(&films),
-            told: None,
-            has_failed: false,
-            is_over: false,
-        };
+        });
+        let ((tasks, receiver), films) = (channel(), Arc::default());
+        let mut shelf = Shelf::new(directory.map(|directory| directory.join("films")));
+        (shelf.pause, shelf.kept) = (every.clamp(Duration::from_millis(50), RETRY), Arc::clone(&films));
         let store = Store {
-            tasks,
+            tasks: Some(tasks),
             thread: thread::Builder::new().name("store".to_owned()).spawn(move || shelf.run(&receiver)).ok(),
-            early: lock.as_ref().map(|_| now + FIRST_SECONDS),
+            early: lock.as_ref().map(|_| Instant::now() + FIRST_SECONDS),
             lock,
+            edits,
             every,
-            due: now,
+            due: Instant::now(),
             copied: (0, 0),
             saved: last.steps.last().cloned(),
             sought: None,
@@ -137,7 +131,7 @@ impl Store {
 
     fn task(&self, task: impl FnOnce(&mut Shelf) + Send + 'static) {
         // Without a thread nothing is kept.
-        let _ = self.tasks.send(Box::new(task));
+        let _ = self.tasks.as_ref().map(|tasks| tasks.send(Box::new(task)));
     }
 
     /// Tells outcomes from now on.
@@ -153,12 +147,12 @@ impl Store {
 
     /// Deletes the film of a picture, or all films.
     pub fn delete(&self, of: Option<Document>) {
-        self.task(|shelf| shelf.delete(of.map(|document| name(&document)).as_deref()));
+        self.task(move |shelf| shelf.delete(of));
     }
 
     /// Keeps edits and films, and asks for the film of a picture that comes back.
     pub fn follow(&mut self, context: &Context, model: &Model, changes: &Changes, tracing: &mut Tracing) {
-        if let (Some(early), Some((_, file))) = (self.early, &self.lock) {
+        if let (Some(early), Some((file, _))) = (self.early, &self.lock) {
             let left = early.saturating_duration_since(Instant::now());
             context.request_repaint_after(left);
             self.early = (!left.is_zero() || file.set_len(0).is_err()).then_some(early);
@@ -189,15 +183,15 @@ impl Store {
                 // The render may have failed.
                 let Ok((film, status)) = film.recv() else { return };
                 let description = describer(&document, &status, seconds_before)(&film);
-                shelf.put(name(&document), Content::Film(film, description));
+                shelf.put(shelf.path(&document), Content::Film(film, description));
             });
         }
     }
 
     fn save_edits(&mut self, document: &Document, changes: &Changes) {
-        let steps = changes.last_steps(document, STEPS);
+        let (path, steps) = (self.edits.clone(), changes.last_steps(document, STEPS));
         if self.lock.is_some() {
-            self.task(move |shelf| shelf.put(EDITS.to_owned(), Content::Edits(edits::to_text(&steps))));
+            self.task(move |shelf| shelf.put(path, Content::Edits(edits::to_text(&steps))));
         }
         self.saved = Some(document.clone());
     }
@@ -208,19 +202,16 @@ impl Store {
         }
         let (document, answer) = (model.document.clone(), self.found.answer(context));
         let before = self.sought.replace(document.clone());
-        if let Some((path, job)) = self.named.take() {
-            self.task(move |_| {
-                let film = saved::resume(&path, &job).map_err(|error| error.to_string());
-                answer.give(film.map(|film| Found { document, film, named: Some(path) }));
-            });
-            return;
-        }
         // A picture that has been given another size is meant to have that.
         let is_resized = before.is_some_and(|before| before.is_same_at_another_size(&document));
         let fits = model.remembered.sizing == Sizing::Viewport && model.presentation.is_none();
         let is_any_size = fits && !document.has_own_size && !is_resized;
+        let named = self.named.take();
         self.task(move |shelf| {
-            if let Some(film) = shelf.find(&document, is_any_size) {
+            if let Some((path, job)) = named {
+                let film = saved::resume(&path, &job).map_err(|error| error.to_string());
+                answer.give(film.map(|film| Found { document, film, named: Some(path) }));
+            } else if let Some(film) = shelf.find(&document, is_any_size) {
                 answer.give(Ok(Found { document, film, named: None }));
             }
         });
@@ -229,11 +220,11 @@ impl Store {
     /// Keeps everything, at the end of the window. What cannot be written is saved elsewhere.
     pub fn end(&mut self, document: &Document, changes: &Changes, tracing: &mut Tracing) {
         self.save_edits(document, changes);
-        tracing.leave();
+        tracing.tracers_mut().for_each(Tracer::leave);
         self.keep(tracing.take_left());
-        self.task(|shelf| shelf.end());
+        self.tasks = None;
         let _ = self.thread.take().map(JoinHandle::join);
-        if let Some((path, _)) = self.lock.as_ref().filter(|_| !thread::panicking()) {
+        if let Some((_, path)) = self.lock.as_ref().filter(|_| !thread::panicking()) {
             let _ = fs::remove_file(path);
         }
     }
@@ -265,25 +256,28 @@ impl Content {
 
 /// The thread's side of the store.
 struct Shelf {
-    directory: Option<PathBuf>,
-    /// Bytes of all films.
-    limit: u64,
-    /// What is not written yet, by the name of its file, the next one first.
-    waiting: Vec<(String, Content)>,
+    /// The folder of the films. Without one they are in memory.
+    folder: Option<PathBuf>,
+    /// What is not written yet, the next one first.
+    waiting: Vec<(PathBuf, Content)>,
     /// How long to wait after a failure, and until when.
     pause: Duration,
     next: Instant,
-    films: Arc<Mutex<Films>>,
+    kept: Arc<Mutex<Films>>,
     told: Option<Answer<()>>,
     has_failed: bool,
-    is_over: bool,
 }
 
 impl Shelf {
+    fn new(folder: Option<PathBuf>) -> Self {
+        let (waiting, pause, next) = (Vec::new(), Duration::ZERO, Instant::now());
+        Shelf { folder, waiting, pause, next, kept: Arc::default(), told: None, has_failed: false }
+    }
+
     fn run(mut self, tasks: &Receiver<Task>) {
         self.note(Duration::ZERO);
-        while !self.is_over {
-            let task = if self.waiting.is_empty() || self.directory.is_none() {
+        loop {
+            let task = if self.waiting.is_empty() || self.folder.is_none() {
                 tasks.recv().map_err(RecvTimeoutError::from)
             } else {
                 tasks.recv_timeout(self.next.saturating_duration_since(Instant::now()))
@@ -291,34 +285,35 @@ impl Shelf {
             let done = match task {
                 Ok(task) => caught(|| task(&mut self)),
                 Err(RecvTimeoutError::Timeout) => caught(|| self.write()),
-                Err(RecvTimeoutError::Disconnected) => return,
+                Err(RecvTimeoutError::Disconnected) => break,
             };
             done.unwrap_or_else(|reason| self.tell(Err(reason)));
         }
+        for (path, content) in self.waiting.drain(..).filter(|_| self.folder.is_some()) {
+            if let (Err(_), Content::Film(film, about)) = (content.write(&path), content) {
+                let saved = saved::rescue(&[], about.get(key::SCENE).unwrap_or("film"), &film, &about);
+                let words = |path: PathBuf| format!("the picture's samples were saved in {}", path.display());
+                console::note(&saved.map_or_else(|lost| lost, words));
+            }
+        }
+        self.note(Duration::ZERO);
     }
 
     /// Takes what is to be written, in place of an earlier state of it.
-    fn put(&mut self, name: String, content: Content) {
-        self.waiting.retain(|(other, _)| *other != name);
-        self.waiting.push((name, content));
-        let bytes = |(_, content): &(String, Content)| match content {
-            Content::Film(film, _) => Film::bytes(film.width(), film.height()),
-            Content::Edits(_) => 0,
-        };
-        while self.waiting.len() > 1 && self.waiting.iter().map(bytes).sum::<u64>() > self.limit {
-            self.waiting.remove(0);
-        }
+    fn put(&mut self, path: PathBuf, content: Content) {
+        self.waiting.retain(|(other, _)| *other != path);
+        self.waiting.push((path, content));
+        self.waiting.drain(..self.waiting.len().saturating_sub(WAITING));
     }
 
     /// Writes what has waited longest.
     fn write(&mut self) {
-        let Some(directory) = &self.directory else { return };
-        let (name, content) = self.waiting.remove(0);
-        let (begin, outcome) = (Instant::now(), content.write(&directory.join(&name)));
+        let (path, content) = self.waiting.remove(0);
+        let (begin, outcome) = (Instant::now(), content.write(&path));
         if outcome.is_ok() {
             self.note(begin.elapsed());
         } else {
-            self.waiting.push((name, content));
+            self.waiting.push((path, content));
             self.next = Instant::now() + self.pause;
         }
         self.tell(outcome);
@@ -335,59 +330,49 @@ impl Shelf {
 
     /// The films in the folder, newest first: when each was written, its bytes and its path.
     fn films(&self) -> Vec<(SystemTime, u64, PathBuf)> {
-        let entries =
-            self.directory.as_ref().and_then(|directory| fs::read_dir(directory.join("films")).ok());
-        let mut films: Vec<_> = entries
-            .into_iter()
-            .flatten()
-            .filter_map(|entry| {
-                let (path, about) = (entry.as_ref().ok()?.path(), entry.ok()?.metadata().ok()?);
-                let is_film = path.extension().is_some_and(|ending| ending == "exr");
-                is_film.then_some((about.modified().ok()?, about.len(), path))
-            })
-            .collect();
+        let entries = self.folder.as_ref().and_then(|folder| fs::read_dir(folder).ok());
+        let about = |entry: fs::DirEntry| {
+            let about = entry.metadata().ok()?;
+            Some((about.modified().ok()?, about.len(), entry.path()))
+        };
+        let films = entries.into_iter().flatten().flatten().filter_map(about);
+        let mut films: Vec<_> =
+            films.filter(|(.., path)| path.extension().is_some_and(|ending| ending == "exr")).collect();
         films.sort_by(|a, b| b.cmp(a));
         films
     }
 
     /// Deletes the oldest films that are too many, and notes what is left.
-    fn note(&mut self, took: Duration) {
-        let mut films = Films { took, ..Films::default() };
-        for (_, bytes, path) in self.films() {
-            if films.count == 0 || films.bytes + bytes <= self.limit || fs::remove_file(path).is_err() {
-                films = Films { count: films.count + 1, bytes: films.bytes + bytes, took };
-            }
-        }
-        *self.films.lock().unwrap_or_else(PoisonError::into_inner) = films;
+    fn note(&self, took: Duration) {
+        let films = thin(self.films(), LIMIT);
+        *self.kept.lock().unwrap_or_else(PoisonError::into_inner) = Films { took, ..films };
     }
 
-    /// Deletes the film of this name, or all films.
-    fn delete(&mut self, name: Option<&str>) {
-        self.waiting.retain(|(other, _)| other == EDITS || name.is_some_and(|name| name != other));
-        for (.., path) in self.films() {
-            if name.is_none_or(|name| path.ends_with(name)) {
-                let _ = fs::remove_file(path);
-            }
-        }
+    /// Deletes the film of a document, or all films.
+    fn delete(&mut self, of: Option<Document>) {
+        let of = of.map(|document| self.path(&document));
+        let is_kept = |path: &Path| of.as_ref().is_some_and(|of| of != path);
+        self.waiting.retain(|(path, content)| is_kept(path) || matches!(content, Content::Edits(_)));
+        let films = self.films().into_iter().filter(|(.., path)| !is_kept(path));
+        films.for_each(|(.., path)| drop(fs::remove_file(path)));
         self.note(Duration::ZERO);
     }
 
     /// The film of a document; if there is none, and `is_any_size`, the newest one of the same picture.
     fn find(&self, document: &Document, is_any_size: bool) -> Option<SavedFilm> {
-        let (own, picture) = (name(document), fingerprint(document));
-        let waiting = self.waiting.iter().rev().map(|(name, _)| PathBuf::from(name));
+        let (own, picture) = (self.path(document), fingerprint(document));
         let films = self.films().into_iter().map(|(.., path)| path);
-        let is_it =
-            |path: &PathBuf| path.ends_with(&own) || is_any_size && path.to_string_lossy().contains(&picture);
-        let mut paths: Vec<_> = waiting.chain(films).filter(is_it).collect();
-        paths.sort_by_key(|path| !path.ends_with(&own));
+        let paths = self.waiting.iter().rev().map(|(path, _)| path.clone()).chain(films);
+        let is_it = |path: &PathBuf| *path == own || is_any_size && path.to_string_lossy().contains(&picture);
+        let mut paths: Vec<_> = paths.filter(is_it).collect();
+        paths.sort_by_key(|path| *path != own);
         paths.iter().find_map(|path| self.read(path, document.clone()))
     }
 
     fn read(&self, path: &Path, mut document: Document) -> Option<SavedFilm> {
-        let waiting = self.waiting.iter().find(|(name, _)| path == Path::new(name));
-        if let Some((_, Content::Film(film, description))) = waiting {
-            let seconds = description.get(key::SECONDS).and_then(|seconds| seconds.parse().ok());
+        let waiting = self.waiting.iter().find(|(other, _)| path == other);
+        if let Some((_, Content::Film(film, about))) = waiting {
+            let seconds = about.get(key::SECONDS).and_then(|seconds| seconds.parse().ok());
             return Some(SavedFilm { film: film.try_copy().ok()?, seconds });
         }
         let saved = saved::open(path).ok()?;
@@ -396,30 +381,24 @@ impl Shelf {
         saved.film().ok()
     }
 
-    /// Writes what is left once more, or saves it elsewhere.
-    fn end(&mut self) {
-        self.is_over = true;
-        for (name, content) in std::mem::take(&mut self.waiting) {
-            let path = self.directory.as_ref().map(|directory| directory.join(&name));
-            let outcome = path.map_or(Err("there is no folder".to_owned()), |path| content.write(&path));
-            console::note(&match (outcome, content) {
-                (Ok(()), _) => continue,
-                (Err(reason), Content::Edits(_)) => format!("weekender: edits not saved: {reason}"),
-                (Err(_), Content::Film(film, description)) => {
-                    match saved::rescue(
-                        &[],
-                        description.get(key::SCENE).unwrap_or("film"),
-                        &film,
-                        &description,
-                    ) {
-                        Ok(path) => format!("the picture's samples were saved in {}", path.display()),
-                        Err(lost) => lost,
-                    }
-                }
-            });
-        }
-        self.note(Duration::ZERO);
+    /// The file of a document's film.
+    fn path(&self, document: &Document) -> PathBuf {
+        let [width, height] = document.size();
+        let name = format!("{}-{width}x{height}.exr", fingerprint(document));
+        self.folder.as_deref().unwrap_or(Path::new("")).join(name)
     }
+}
+
+/// Deletes the oldest of these films, which begin with the newest, until the others have at most `limit` bytes or only one is
+/// left.
+fn thin(films: Vec<(SystemTime, u64, PathBuf)>, limit: u64) -> Films {
+    let mut left = Films::default();
+    for (_, bytes, path) in films {
+        if left.count == 0 || left.bytes + bytes <= limit || fs::remove_file(path).is_err() {
+            (left.count, left.bytes) = (left.count + 1, left.bytes + bytes);
+        }
+    }
+    left
 }
 
 /// What tells a picture from others, apart from its size.
@@ -430,12 +409,6 @@ fn fingerprint(document: &Document) -> String {
     let mut checksum = Checksum::default();
     checksum.text(file::to_picture_toml(&recipe).as_bytes());
     checksum.finish()
-}
-
-/// The name of the file of a document's film.
-fn name(document: &Document) -> String {
-    let [width, height] = document.size();
-    format!("films/{}-{width}x{height}.exr", fingerprint(document))
 }
 
 #[cfg(test)]
@@ -450,25 +423,15 @@ mod tests {
         document
     }
 
-    fn shelf(directory: &Path, limit: u64) -> Shelf {
-        Shelf {
-            directory: Some(directory.to_owned()),
-            limit,
-            waiting: Vec::new(),
-            pause: Duration::ZERO,
-            next: Instant::now(),
-            films: Arc::default(),
-            told: None,
-            has_failed: false,
-            is_over: false,
-        }
+    fn shelf(directory: &Path) -> Shelf {
+        Shelf::new(Some(directory.to_owned()))
     }
 
     fn put(shelf: &mut Shelf, document: &Document, samples: u64) {
         let mut film = Film::new(document.size()[0], document.size()[1]);
         film.record(0..samples, 0).unwrap();
         let description = Description::new(&file::to_picture_toml(&document.recipe()));
-        shelf.put(name(document), Content::Film(film, description));
+        shelf.put(shelf.path(document), Content::Film(film, description));
     }
 
     fn found(shelf: &Shelf, document: &Document, is_any_size: bool) -> Option<u64> {
@@ -478,7 +441,7 @@ mod tests {
     #[test]
     fn a_film_is_found_by_its_job_whether_it_is_written_or_not() {
         let directory = tempfile::tempdir().unwrap();
-        let mut shelf = shelf(directory.path(), LIMIT);
+        let mut shelf = shelf(directory.path());
         let (metal, mut other) = (document("metal"), document("metal"));
         other.settings.seed = 9;
         put(&mut shelf, &metal, 8);
@@ -495,34 +458,28 @@ mod tests {
         put(&mut shelf, &metal, 4);
         shelf.write();
         assert_eq!(found(&shelf, &metal, false), Some(8));
-        shelf.delete(Some(&name(&other)));
+        shelf.delete(Some(other.clone()));
         assert_eq!(found(&shelf, &metal, false), Some(8));
-        shelf.delete(Some(&name(&metal)));
+        shelf.delete(Some(metal.clone()));
         assert_eq!(found(&shelf, &metal, true), None);
     }
 
     #[test]
     fn the_oldest_films_go_when_there_are_too_many() {
         let directory = tempfile::tempdir().unwrap();
-        let mut shelf = shelf(directory.path(), LIMIT);
+        let mut shelf = shelf(directory.path());
         let documents = ["metal", "metal-fuzzy", "glass-schlick"].map(document);
         for (age, document) in documents.iter().enumerate() {
             put(&mut shelf, document, 8);
             shelf.write();
-            let file = File::options().write(true).open(directory.path().join(name(document))).unwrap();
+            let file = File::options().write(true).open(shelf.path(document)).unwrap();
             file.set_modified(SystemTime::now() - Duration::from_secs(100 - age as u64)).unwrap();
         }
-        shelf.note(Duration::ZERO);
-        let all = *shelf.films.lock().unwrap();
+        let all = thin(shelf.films(), LIMIT);
         assert_eq!(all.count, 3);
-        shelf.limit = all.bytes - 1;
-        shelf.note(Duration::ZERO);
-        assert_eq!(
-            documents.each_ref().map(|document| found(&shelf, document, false)),
-            [None, Some(8), Some(8)]
-        );
-        shelf.limit = 0;
-        shelf.note(Duration::ZERO);
-        assert_eq!(shelf.films.lock().unwrap().count, 1, "the newest one stays");
+        assert_eq!(thin(shelf.films(), all.bytes - 1).count, 2);
+        let left = documents.each_ref().map(|document| found(&shelf, document, false));
+        assert_eq!(left, [None, Some(8), Some(8)]);
+        assert_eq!(thin(shelf.films(), 0).count, 1, "the newest one stays");
     }
 }

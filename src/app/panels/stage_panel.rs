@@ -45,13 +45,7 @@ pub fn paragraph(ui: &mut Ui, heading: &str, text: &str) {
 
 fn stage_ui(ui: &mut Ui, stage: &Stage, cx: &PanelContext) {
     title(ui, &format!("{} {}", stage.section, stage.section_title()), stage.title);
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 16.0;
-        let book = format!("{} in the book", stage.section);
-        for (name, command) in [(book.as_str(), Command::Book), ("Companion", Command::Companion)] {
-            add_command(ui, cx, command, Link::new(name));
-        }
-    });
+    add_command(ui, cx, Command::Book, Link::new(format!("{} in the book", stage.section)));
     for (heading, text) in
         [("What is new", stage.what_is_new), ("Why", stage.why), ("Look for", stage.look_for)]
     {

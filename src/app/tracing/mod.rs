@@ -78,8 +78,7 @@ impl Tracing {
 
     /// Throws the samples away and begins anew.
     pub fn restart(&mut self) {
-        self.main.started = None;
-        self.second.tracer.iter_mut().for_each(|tracer| tracer.started = None);
+        self.tracers_mut().for_each(|tracer| tracer.started = None);
     }
 
     /// The status of the render of the other picture, if it has one of its own.
@@ -97,14 +96,11 @@ impl Tracing {
 
     /// The films to keep of the pictures that were left since the last call.
     pub fn take_left(&mut self) -> Vec<Left> {
-        let of_second = self.second.tracer.iter_mut().flat_map(|tracer| tracer.left.drain(..));
-        self.main.left.drain(..).chain(of_second).collect()
+        self.tracers_mut().flat_map(|tracer| tracer.left.drain(..)).collect()
     }
 
-    /// Leaves all pictures.
-    pub fn leave(&mut self) {
-        self.main.leave();
-        self.second.tracer.iter_mut().for_each(Tracer::leave);
+    pub fn tracers_mut(&mut self) -> impl Iterator<Item = &mut Tracer> {
+        std::iter::once(&mut self.main).chain(&mut self.second.tracer)
     }
 
     /// Gives the document the size that fits the window, unless its samples are worth more or are needed.

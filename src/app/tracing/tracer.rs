@@ -10,7 +10,7 @@ use crate::progressive::{Plan, Progressive, RenderRequest, Status, Stop, View};
 use eframe::egui;
 use std::io;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
 /// A film that was traced for longer than this many seconds is kept.
@@ -196,30 +196,28 @@ impl Tracer {
         Some(self.seconds_before? + self.status.trace.as_secs_f64())
     }
 
-    /// The full-size picture that is traced, if its film has taken long enough to be kept.
-    fn long(&self) -> Option<&Document> {
+    /// The way of the film to where it is kept, if it has taken long enough for that.
+    fn way(&self) -> Option<(Sender<(Film, Status)>, Left)> {
         let document = &self.started.as_ref()?.document;
         let is_long = self.seconds().is_none_or(|seconds| seconds > LONG_SECONDS);
-        (is_long && self.has_samples(document)).then_some(document)
+        let ((sender, film), seconds_before) = (channel(), self.seconds_before);
+        let left = || (sender, Left { document: document.clone(), seconds_before, film });
+        (is_long && self.has_samples(document)).then(left)
     }
 
     /// A copy of the film, if it has taken long enough to be kept.
     pub fn copy_long(&self) -> Option<Left> {
-        let (document, (sender, film), status) =
-            (self.long()?.clone(), channel(), Status::clone(&self.status));
-        self.inspect(move |film| match film.try_copy() {
-            Ok(copy) => _ = sender.send((copy, status)),
-            Err(error) => log::warn!("the film is not saved meanwhile: {error}"),
-        });
-        Some(Left { document, seconds_before: self.seconds_before, film })
+        let ((sender, left), status) = (self.way()?, Status::clone(&self.status));
+        // Without memory for a copy, it is kept at its end alone.
+        self.inspect(move |film| _ = film.try_copy().map(|copy| sender.send((copy, status))));
+        Some(left)
     }
 
     /// Ends the render. Its film is kept if it has taken long enough.
     pub fn leave(&mut self) {
-        if let Some(document) = self.long().cloned() {
-            let (sender, film) = channel();
+        if let Some((sender, left)) = self.way() {
             self.progressive.hand_over(move |film, status| _ = sender.send((film, status)));
-            self.left.push(Left { document, seconds_before: self.seconds_before, film });
+            self.left.push(left);
         }
         self.started = None;
     }

@@ -84,6 +84,7 @@ impl Window {
         }
         let mut shell = Shell::default();
         if has_hardly_begun && !is_asked_for {
+            remembered.mine = None;
             if !options.is_device_given {
                 remembered.device = Device::default();
             }

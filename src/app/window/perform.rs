@@ -624,10 +624,7 @@ impl Window {
 
     /// Goes on with a film of the document.
     pub(super) fn adopt(&mut self, film: SavedFilm) {
-        self.tracing.film = Some(film);
-        self.store.sought = Some(self.model.document.clone());
-        // That is no change, after which a comparison would end.
-        self.changes.last = self.model.document.clone();
+        (self.tracing.film, self.store.sought) = (Some(film), Some(self.document().clone()));
     }
 
     // Files

@@ -100,26 +100,22 @@ impl Window {
 
     /// Goes on with a film, unless the picture has been changed meanwhile or has more samples.
     fn go_on(&mut self, Found { document: sought, film, named }: Found) {
-        let document = &mut self.model.document;
+        let (document, main) = (&mut self.model.document, &self.tracing.main);
         let size = [film.film.width(), film.film.height()];
         let is_same = document.has_same_film(&sought)
             || size != sought.size() && !document.has_own_size && document.is_same_at_another_size(&sought);
-        let main = &self.tracing.main;
-        let samples = if main.is_full(document) { main.status().samples_per_pixel } else { 0 };
-        match named {
-            Some(path) if is_same => {
-                self.shell.toasts.good(format!("Resumed {}", document.place()));
-                self.model.remembered.note_recent(&path);
-            }
-            Some(path) => {
-                let words = "the picture was changed before it had been read; open the file to continue it";
-                self.shell.toasts.bad(format!("Not resumed from {}: {words}", path.display()));
-                return;
-            }
-            None if is_same && film.film.sample_count() >= samples => document.set_size(size),
-            None => return,
+        let has_more = !main.is_full(document) || film.film.sample_count() >= main.status().samples_per_pixel;
+        if is_same && (has_more || named.is_some()) {
+            document.set_size(size);
+            self.adopt(film);
         }
-        self.adopt(film);
+        if let Some(path) = named {
+            let place = self.document().place();
+            let changed = "the picture was changed before it had been read; open the file to continue it";
+            let resumed = self.settle("Not resumed", is_same.then_some(place).ok_or(changed.to_owned()));
+            resumed.into_iter().for_each(|place| self.shell.toasts.good(format!("Resumed {place}")));
+            self.model.remembered.note_recent(&path);
+        }
     }
 
     fn add_kept(&mut self, kept: Kept) {
