@@ -85,7 +85,7 @@ fn a_long_render_that_is_left_while_it_traces_keeps_its_samples() {
     harness.state_mut().tracing.main.seconds_before = Some(60.0);
     send(&mut harness, Command::NextStage);
     until(&mut harness, "another picture", has_samples(1));
-    send(&mut harness, Command::PreviousStage);
+    send(&mut harness, Command::Undo);
     until(&mut harness, "its samples", |window| held(window) > 0);
     assert_eq!(harness.state().shown_document().stage().unwrap().id, "metal");
 }
