@@ -2,6 +2,7 @@
 
 use crate::harness::{SMALL, control, drop_file, has_samples, open, send, until, until_seen};
 use crate::questions::Ask as _;
+use crate::recovered::held;
 use eframe::egui;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -68,13 +69,14 @@ fn a_check_leaves_the_users_own_picture_as_it_was() {
     send(&mut harness, Command::AddSphere);
     until(&mut harness, "my scene", |window| has_samples(40)(window) && window.status().phase.is_over());
     let own = harness.state().shown_document().clone();
+    harness.state_mut().tracing.main.seconds_before = Some(60.0);
     let _kept = drop_picture(&mut harness, &gradient(true));
     until_compared(&mut harness);
     assert_eq!(harness.state().shown_document().size(), [160, 90]);
     control(&harness, "Close").click();
     harness.run_steps(3);
     assert!(*harness.state().shown_document() == own && !harness.state().is_comparing());
-    until(&mut harness, "its samples", has_samples(40));
+    until(&mut harness, "its samples", |window| held(window) == 40);
     assert!(harness.state().status().contributions.is_empty(), "nothing was traced again");
     // A picture that was changed during a check stays.
     let _kept = drop_picture(&mut harness, &gradient(true));

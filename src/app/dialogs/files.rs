@@ -2,15 +2,15 @@
 
 use super::outcome::{Outcome, Purpose, Wanted, What};
 use crate::app::commands::Snapshot;
-use crate::app::model::Document;
 use crate::app::model::animation::FRAMES_PER_SECOND;
+use crate::app::model::{Document, Source};
 use crate::app::panels::controls::in_shape;
 use crate::app::panels::status::time;
-use crate::app::toolkit::widgets::{About, FIELD, Number, hint, named, primary, row, small};
+use crate::app::toolkit::widgets::{About, FIELD, Number, hint, named, primary, row, samples_words, small};
 use crate::app::toolkit::{Answers, theme};
 use crate::film::Film;
 use crate::job::recipe::plain_name;
-use crate::job::render::SIZE_LIMIT;
+use crate::job::render::{SAMPLE_LIMIT, SIZE_LIMIT};
 use crate::progressive::{Phase, Status};
 use crate::scene::animation::FRAME_LIMIT;
 use crate::system::files::pictures_directory;
@@ -213,8 +213,10 @@ impl SaveBox {
         });
         let (path, shown) = (self.path(), snapshot.document());
         let size = self.pixels(self.size, shown);
-        let (is_replaced, has_folder) = (path.exists(), path.parent().is_none_or(Path::is_dir));
-        let (free, mut replaces) = (free_path(&path), false);
+        // A scene is saved in its own file.
+        let is_own = self.what == What::Scene && shown.origin.source == Source::File(path.clone());
+        let (is_replaced, has_folder) = (path.exists() && !is_own, path.parent().is_none_or(Path::is_dir));
+        let (free, mut replaces) = (if is_own { path.clone() } else { free_path(&path) }, false);
         let is_animation = self.what == What::Animation;
         match has_folder {
             _ if is_animation && path.is_dir() => ui.weak("Frames of it that are there already are kept."),
@@ -272,11 +274,11 @@ impl SaveBox {
             (Size::Other, "Other"),
         ] {
             let [width, height] = self.pixels(size, snapshot.document());
-            let samples = samples_wanted(snapshot.document(), &snapshot.status);
+            let samples = samples_to_save(snapshot.document(), &snapshot.status);
             let when = match seconds_at(&snapshot.status, [width, height], samples) {
                 _ if self.what == What::Animation => String::new(),
                 _ if snapshot.document().size() == [width, height] => ", ready".to_owned(),
-                Some(seconds) => format!(", about {}", time(seconds)),
+                Some(seconds) => format!(", {}, about {}", samples_words(samples), time(seconds)),
                 None => String::new(),
             };
             let help = match size {
@@ -365,8 +367,21 @@ fn file_name(document: &Document) -> String {
     title.replace(['/', '\\', ':', '?', '*', '"', '<', '>', '|'], "")
 }
 
+/// Samples per pixel of a picture that is rendered to be saved: those of the one on the screen when that reaches its goal.
+pub fn samples_to_save(document: &Document, status: &Status) -> u64 {
+    let traced = status.samples_per_pixel.max(1);
+    // Four times the samples halve the error.
+    let at_goal = document.stop.noise.zip(status.error).map(|(goal, error)| (error.rmse / goal).powi(2));
+    match document.stop.samples.or(at_goal.map(|times| (traced as f64 * times).ceil() as u64)) {
+        Some(samples) if !matches!(status.phase, Phase::Done(_)) => {
+            samples.clamp(traced, SAMPLE_LIMIT.max(traced))
+        }
+        _ => traced,
+    }
+}
+
 /// Samples per pixel that the picture has when it is done, as far as is known.
-pub fn samples_wanted(document: &Document, status: &Status) -> u64 {
+fn samples_wanted(document: &Document, status: &Status) -> u64 {
     let traced = status.samples_per_pixel.max(1);
     if matches!(status.phase, Phase::Done(_)) { traced } else { document.stop.samples.unwrap_or(traced) }
 }
@@ -416,5 +431,26 @@ impl LargeSize {
             Some(false) => Outcome::Close,
             None => Outcome::Stay,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::Origin;
+    use crate::film::ErrorEstimate;
+    use crate::progressive::{EndReason, Stop};
+
+    #[test]
+    fn a_picture_to_be_saved_has_the_samples_of_its_goal() {
+        let mut document = Document::new(Origin::usual());
+        document.stop = Stop { noise: Some(0.002), ..Stop::default() };
+        let error = Some(ErrorEstimate { rmse: 0.01, rmse_deviation: 0.0, rel_mse: 0.0 });
+        let mut status = Status { samples_per_pixel: 10, phase: Phase::Tracing, error, ..Status::default() };
+        assert_eq!(samples_to_save(&document, &status), 250);
+        document.stop = Stop::at_samples(99);
+        assert_eq!(samples_to_save(&document, &status), 99);
+        status.phase = Phase::Done(EndReason::Samples);
+        assert_eq!(samples_to_save(&document, &status), 10, "as many as the one on the screen");
     }
 }

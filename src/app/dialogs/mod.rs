@@ -8,7 +8,7 @@ mod outcome;
 mod palette;
 pub mod stage_list;
 
-pub use files::{LargeSize, PathField, SaveBox, default_folder, samples_wanted};
+pub use files::{LargeSize, PathField, SaveBox, default_folder, samples_to_save};
 pub use outcome::{Outcome, Purpose, Wanted, What};
 
 use crate::app::commands::PanelContext;

@@ -41,10 +41,9 @@ pub enum What {
 
 impl What {
     /// All of them, with name, use and ending.
-    pub(super) const ALL: [(What, &str, &str, &str); 6] = [
+    pub(super) const ALL: [(What, &str, &str, &str); 5] = [
         (What::Picture(OutputFormat::Png), "PNG picture", "To look at; remembers how it was made", "png"),
         (What::Picture(OutputFormat::P6), "PPM picture (P6)", "The format of the book", "ppm"),
-        (What::Picture(OutputFormat::Pfm), "PFM picture", "Linear numbers for other programs", "pfm"),
         (What::Picture(OutputFormat::Exr), "Film (EXR)", "All light and samples; can be resumed", "exr"),
         (What::Scene, "Scene (TOML)", "Text to edit; no picture in it", "toml"),
         (What::Animation, "Animation", "A folder of pictures, along the bookmarks", ""),

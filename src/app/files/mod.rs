@@ -29,16 +29,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
-/// A file that the window shows.
-pub struct Opened {
-    pub saved: Saved,
-    /// The film, if the file has one.
-    pub film: Option<SavedFilm>,
-}
+/// A file that the window shows, and the film, if it has one.
+pub type Opened = (Saved, Option<SavedFilm>);
 
 /// Something that was written or made.
 pub enum Made {
-    File(PathBuf),
+    /// A file; with its picture if it is a scene.
+    File(PathBuf, Option<Box<Document>>),
     /// An animation of this number of frames in this folder.
     Frames(u32, PathBuf),
 }
@@ -232,13 +229,12 @@ impl Files {
 
     /// Writes a scene file. The text of a large scene takes seconds.
     pub fn save_scene(&mut self, context: &Context, path: PathBuf, document: &Document) {
-        let (recipe, checked) = (document.recipe(), Arc::clone(&document.checked));
+        let document = document.clone();
         let work = move || {
-            let text = file::to_toml(&recipe);
+            let text = file::to_toml(&document.recipe());
             replace_file(&path, |writer| writer.write_all(text.as_bytes()))
                 .map_err(|error| error.to_string())?;
-            checked.note_file(&std::path::absolute(&path).unwrap_or_else(|_| path.clone()));
-            Ok(Made::File(path))
+            Ok(Made::File(path, Some(Box::new(document))))
         };
         self.saved.ask("files", context, work);
     }
@@ -248,7 +244,7 @@ impl Files {
         let opened = |saved: Saved| {
             saved.job()?;
             let film = matches!(saved.kind, Kind::Film(_)).then(|| saved.film()).transpose()?;
-            Ok(Opened { saved, film })
+            Ok((saved, film))
         };
         let work = move || match open(&path).and_then(opened) {
             Err(_) if !path.exists() => {
@@ -291,7 +287,7 @@ fn write(
         description.set(key::DENOISED, denoised.error.words());
     }
     let written = write_image(&path, film, document.rules().transfer, &description);
-    written.map(|()| Made::File(path)).map_err(|error| error.to_string())
+    written.map(|()| Made::File(path, None)).map_err(|error| error.to_string())
 }
 
 /// The last part of a path.

@@ -1,13 +1,13 @@
 //! The scene file of the picture is read again when another program has changed it.
 
-use crate::app::model::{Origin, Source, stamp_of};
+use crate::app::model::{Origin, Source};
 use crate::app::toolkit::Answers;
 use crate::job::recipe::{Recipe, file};
 use eframe::egui::Context;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Weak};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 const LOOKS_APART: Duration = Duration::from_millis(500);
 
@@ -42,6 +42,12 @@ impl SceneFile {
         }
         self.watched = Some((Arc::clone(origin), token));
     }
+}
+
+/// A file's length and modification time, which change with its content. None if it is no regular file.
+fn stamp_of(path: &Path) -> Option<(u64, Option<SystemTime>)> {
+    let found = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?;
+    Some((found.len(), found.modified().ok()))
 }
 
 /// Reports each change of the file, or of the table of spheres that it names, once it has settled.

@@ -14,7 +14,7 @@ use crate::job::recipe::{Recipe, file};
 use crate::job::render::RenderJob;
 use crate::job::saved::{self, SavedFilm};
 use crate::system::console;
-use crate::system::files::{lock_path, write_text};
+use crate::system::files::{check_writable, lock_path, write_text};
 use eframe::egui::Context;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -240,14 +240,12 @@ impl Content {
     fn write(&self, path: &Path) -> Result<(), String> {
         let folder = path.parent().unwrap_or(path);
         fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        let is_there = |film: &Film| {
+            checkpoint::read_head(path).is_ok_and(|there| there.samples.count() >= film.sample_count())
+        };
         let written = match self {
             Content::Edits(text) => write_text(path, text),
-            Content::Film(film, _)
-                if checkpoint::read_head(path)
-                    .is_ok_and(|there| there.samples.count() >= film.sample_count()) =>
-            {
-                Ok(())
-            }
+            Content::Film(film, _) if is_there(film) => Ok(()),
             Content::Film(film, description) => checkpoint::save(path, film, description),
         };
         written.map_err(|error| error.to_string())
@@ -275,6 +273,8 @@ impl Shelf {
     }
 
     fn run(mut self, tasks: &Receiver<Task>) {
+        // What killed windows have left unfinished goes.
+        let _ = self.folder.as_ref().map(|folder| check_writable(&folder.join("film.exr")));
         self.note(Duration::ZERO);
         loop {
             let task = if self.waiting.is_empty() || self.folder.is_none() {

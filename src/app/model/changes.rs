@@ -48,6 +48,11 @@ impl Changes {
         done.into()
     }
 
+    /// All documents of the history.
+    pub fn all_mut(&mut self) -> impl Iterator<Item = &mut Document> {
+        self.done.iter_mut().chain(&mut self.undone).chain([&mut self.last])
+    }
+
     /// What undo and redo would change, in words.
     pub fn labels(&self, document: &Document) -> [Option<&'static str>; 2] {
         [self.earlier(document), self.later(document)].map(|other| Some(document.difference(other?)))

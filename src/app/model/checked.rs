@@ -3,9 +3,7 @@
 use crate::job::render::{JobError, RenderJob, RenderSettings};
 use crate::scene::{Camera, Scene};
 use crate::stages::Rules;
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
-use std::time::SystemTime;
+use std::sync::{Arc, OnceLock};
 
 /// A scene under the rules of its origin. It never changes: an edit makes another one.
 #[derive(Debug)]
@@ -14,14 +12,12 @@ pub struct CheckedScene {
     rules: Rules,
     /// The job of the scene, or why there is none; usable for any camera and size.
     base: OnceLock<Result<RenderJob, JobError>>,
-    /// The scene file that the scene was last saved in, and how it was then.
-    file: Mutex<Option<(PathBuf, Option<Stamp>)>>,
 }
 
 impl CheckedScene {
     /// A scene that has not been checked yet.
     pub fn new(scene: Arc<Scene>, rules: Rules) -> Self {
-        CheckedScene { scene, rules, base: OnceLock::new(), file: Mutex::default() }
+        CheckedScene { scene, rules, base: OnceLock::new() }
     }
 
     /// The scene.
@@ -48,52 +44,12 @@ impl CheckedScene {
             RenderJob::new(scene, Camera::BOOK, RenderSettings::default(), self.rules)
         })
     }
-
-    /// The scene file that contains the scene, if it was saved and the file is unchanged since.
-    pub fn file(&self) -> Option<PathBuf> {
-        let (path, stamp) = self.file.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
-        (stamp_of(&path) == stamp).then_some(path)
-    }
-
-    /// Notes that the scene was saved in this file.
-    pub fn note_file(&self, path: &Path) {
-        *self.file.lock().unwrap_or_else(PoisonError::into_inner) = Some((path.to_owned(), stamp_of(path)));
-    }
-}
-
-/// A file's length and modification time, which change with its content.
-pub type Stamp = (u64, Option<SystemTime>);
-
-/// The stamp of a regular file, if it can be examined.
-pub fn stamp_of(path: &Path) -> Option<Stamp> {
-    let found = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?;
-    Some((found.len(), found.modified().ok()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::stages::Stage;
-
-    #[test]
-    fn a_scene_is_in_its_file_as_long_as_nobody_changes_that() {
-        let directory = tempfile::tempdir().unwrap();
-        let [path, other] = ["mine.toml", "other.toml"].map(|name| directory.path().join(name));
-        let scene = CheckedScene::new(Arc::default(), Rules::FINISHED);
-        assert_eq!(scene.file(), None);
-        std::fs::write(&path, "one").unwrap();
-        scene.note_file(&path);
-        assert_eq!(scene.file(), Some(path.clone()));
-        std::fs::write(&path, "another length").unwrap();
-        assert_eq!(scene.file(), None);
-        scene.note_file(&path);
-        assert_eq!(scene.file(), Some(path.clone()), "it was saved again");
-        std::fs::write(&other, "two").unwrap();
-        scene.note_file(&other);
-        assert_eq!(scene.file(), Some(other.clone()), "the file that it was saved in last");
-        std::fs::remove_file(other).unwrap();
-        assert_eq!(scene.file(), None);
-    }
 
     #[test]
     fn jobs_have_the_requested_camera_and_settings() {

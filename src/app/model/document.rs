@@ -8,6 +8,7 @@ use crate::progressive::{EndReason, Phase, Status, Stop};
 use crate::scene::animation::Keyframe;
 use crate::scene::{Camera, Pick, Scene};
 use crate::stages::{Rules, Shading, Stage};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Suffix of the file names of changed scenes.
@@ -195,10 +196,18 @@ impl Document {
         self.stage().map_or_else(|| self.title(), |stage| stage.section.to_owned())
     }
 
-    /// The name for files: a changed scene has its own, so that it does not replace the file that it came from.
+    /// The name for files: a changed scene of the program has its own, one of a file that of the file.
     pub fn name(&self) -> String {
-        let name = &self.origin.recipe.name;
-        if self.has_changed_scene() { changed(name) } else { name.clone() }
+        let (name, is_file) = (&self.origin.recipe.name, matches!(self.origin.source, Source::File(_)));
+        if self.has_changed_scene() && !is_file { changed(name) } else { name.clone() }
+    }
+
+    /// The origin of the picture once its scene has been saved in a file.
+    pub fn saved_in(&self, path: &Path) -> Origin {
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let recipe = Recipe { name, camera: self.camera, ..self.recipe() };
+        Origin { recipe, source: Source::File(path), scene: Arc::clone(&self.checked) }
     }
 
     /// Width divided by height.
@@ -214,8 +223,7 @@ impl Document {
 
     /// Whether both documents consist of the same samples.
     pub fn has_same_film(&self, other: &Document) -> bool {
-        Arc::ptr_eq(&self.origin, &other.origin)
-            && Arc::ptr_eq(&self.checked, &other.checked)
+        Arc::ptr_eq(&self.checked, &other.checked)
             && self.acting_camera() == other.acting_camera()
             && self.settings == other.settings
     }

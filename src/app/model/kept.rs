@@ -25,17 +25,15 @@ pub struct Kept {
     pub film: Arc<Film>,
     /// The picture of a file, with the steps of its format.
     pub picture: Option<Picture>,
-    /// Tracing time of its samples, if known.
-    pub seconds: Option<f64>,
     /// Its picture to subtract from another.
     pub means: Arc<ReferenceMeans>,
 }
 
 impl Kept {
     /// Keeps a film of `document` that has samples.
-    pub fn new(document: Document, film: Film, seconds: Option<f64>) -> Self {
+    pub fn new(document: Document, film: Film) -> Self {
         let (name, transfer) = (document.title(), document.rules().transfer);
-        Kept { document: Some(document), seconds, ..Kept::of(name, Arc::new(film), transfer) }
+        Kept { document: Some(document), ..Kept::of(name, Arc::new(film), transfer) }
     }
 
     /// Reads the picture of a file. Where it says nothing else, its light has become bytes by `transfer`.
@@ -91,7 +89,6 @@ impl Kept {
             means: Arc::new(ReferenceMeans::of(&film)),
             document: None,
             picture: None,
-            seconds: None,
             name,
             transfer,
             film,

@@ -19,7 +19,7 @@ pub mod spheres;
 mod state;
 mod view;
 
-pub use checked::{CheckedScene, stamp_of};
+pub use checked::CheckedScene;
 pub use companion::file_url;
 pub use device::{Device, DeviceOptions, adapter, best_isa, core_count, lane_counts};
 pub use document::Document;

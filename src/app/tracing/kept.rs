@@ -54,10 +54,9 @@ impl KeptActions {
         }
         if std::mem::take(&mut self.is_wanted) {
             let (document, answer) = (document.clone(), self.copied.promise(context));
-            let seconds = tracing.main.seconds();
             tracing.main.inspect(move |film| {
                 let copy = film.try_copy().map_err(|error| error.to_string());
-                answer.give_from("keep", move || copy.map(|film| Kept::new(document, film, seconds)));
+                answer.give_from("keep", move || copy.map(|film| Kept::new(document, film)));
             });
         }
     }

@@ -209,7 +209,7 @@ impl Tracer {
     pub fn copy_long(&self) -> Option<Left> {
         let ((sender, left), status) = (self.way()?, Status::clone(&self.status));
         // Without memory for a copy, it is kept at its end alone.
-        self.inspect(move |film| _ = film.try_copy().map(|copy| sender.send((copy, status))));
+        self.inspect(move |film| _ = film.try_copy().ok().and_then(|copy| sender.send((copy, status)).ok()));
         Some(left)
     }
 

@@ -57,6 +57,12 @@ impl Window {
     /// Those of [`Window::new`].
     pub fn with(options: WindowOptions, storage: Option<&dyn eframe::Storage>) -> Result<Self> {
         let (mut remembered, view) = Stored::read(storage);
+        let directory = options.state_directory.as_deref();
+        let (mut store, Last { steps, has_ended_early, has_hardly_begun }) =
+            Store::open(directory, options.autosave_every);
+        if has_hardly_begun {
+            (remembered.device, remembered.mine) = (Device::default(), None);
+        }
         if options.is_device_given {
             remembered.device = Device::of(&options.backend);
         }
@@ -68,9 +74,6 @@ impl Window {
             remembered.mine_stage = None;
             (remembered.has_info, remembered.tab) = (true, Tab::Check);
         }
-        let directory = options.state_directory.as_deref();
-        let (mut store, Last { steps, has_ended_early, has_hardly_begun }) =
-            Store::open(directory, options.autosave_every);
         let is_asked_for = options.is_fresh || options.is_picture_given;
         let goes_on = !is_asked_for && !has_hardly_begun;
         let mut document = match steps.last() {
@@ -84,13 +87,8 @@ impl Window {
         }
         let mut shell = Shell::default();
         if has_hardly_begun && !is_asked_for {
-            remembered.mine = None;
-            if !options.is_device_given {
-                remembered.device = Device::default();
-            }
             let words = "The last window ended soon after it began. This one begins without its picture";
-            let offers: &[_] = if steps.is_empty() { &[] } else { &[Command::Undo] };
-            shell.toasts.offer(words, offers);
+            shell.toasts.offer(words, &[Command::Undo]);
         } else if has_ended_early && goes_on && !steps.is_empty() {
             shell.toasts.good("The last window ended early. This is the picture that it showed");
         }

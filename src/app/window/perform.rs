@@ -4,7 +4,7 @@ use super::Window;
 use super::layout::NARROW;
 use crate::app::commands::{Command, MENUS, Snapshot};
 use crate::app::dialogs::{
-    Dialog, LargeSize, Outcome, Purpose, SaveBox, Wanted, What, default_folder, samples_wanted, stage_list,
+    Dialog, LargeSize, Outcome, Purpose, SaveBox, Wanted, What, default_folder, samples_to_save, stage_list,
 };
 use crate::app::model::animation::{FRAMES_PER_SECOND, Play};
 use crate::app::model::spheres::grip::new_body;
@@ -56,7 +56,10 @@ impl Window {
             C::NewScene => self.show_origin(Origin::new_scene()),
             C::Open => self.ask_path(context, Purpose::Open),
             C::CheckPicture => self.ask_path(context, Purpose::Check),
-            C::Save => self.ask_save(What::Picture(OutputFormat::Png)),
+            C::Save => self.ask_save(match self.document().origin.source {
+                Source::New | Source::File(_) => What::Scene,
+                _ => What::Picture(OutputFormat::Png),
+            }),
             C::SaveAs(format) => self.ask_save(What::Picture(format)),
             C::SaveAnimation => self.ask_save(What::Animation),
             C::Recent(place) => self.open_recent(context, place),
@@ -608,17 +611,11 @@ impl Window {
         }
     }
 
-    /// Goes on with the chosen kept picture.
+    /// Goes on with the chosen kept picture, whose film is in the store.
     pub(super) fn go_on_from_kept(&mut self) {
-        let Some(kept) = self.model.view.kept_partner().cloned() else { return };
-        let Some(document) = kept.document.clone() else { return };
-        match kept.film.try_copy() {
-            Ok(film) => {
-                self.show_document(Document { has_own_size: true, ..document });
-                self.model.view.end_comparison();
-                self.adopt(SavedFilm { film, seconds: kept.seconds });
-            }
-            Err(error) => self.shell.toasts.bad(error.to_string()),
+        if let Some(document) = self.model.view.kept_partner().and_then(|kept| kept.document.clone()) {
+            self.show_document(Document { has_own_size: true, ..document });
+            self.model.view.end_comparison();
         }
     }
 
@@ -681,7 +678,7 @@ impl Window {
                 self.files.pending_save = Some((format, path));
             }
             What::Picture(format) => {
-                let samples = samples_wanted(document, self.tracing.main.status());
+                let samples = samples_to_save(document, self.tracing.main.status());
                 let mut document = document.clone();
                 document.give_size(size);
                 self.files.save_rendered(context, (document, samples), backend, (format, path))?;

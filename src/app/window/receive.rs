@@ -9,6 +9,7 @@ use crate::job::saved::Kind;
 use crate::progressive::Stop;
 use crate::progressive::describe::counted;
 use eframe::egui::Context;
+use std::path::Path;
 use std::sync::Arc;
 
 impl Window {
@@ -16,7 +17,8 @@ impl Window {
     pub(super) fn receive(&mut self, context: &Context) {
         while let Some(outcome) = self.files.take_made() {
             match self.settle("Not saved", outcome) {
-                Some(Made::File(path)) => {
+                Some(Made::File(path, scene)) => {
+                    scene.iter().for_each(|saved| self.take_file(&path, saved));
                     self.model.remembered.note_recent(&path);
                     let words = format!("Saved {}", name_of(&path));
                     self.shell.toasts.good_with(words, &[Command::ShowInFolder]);
@@ -60,9 +62,7 @@ impl Window {
             self.settle("Not resumed", outcome).into_iter().for_each(|found| self.go_on(found));
         }
         while let Some(outcome) = self.store.outcomes.take() {
-            let outcome =
-                outcome.map_err(|reason| format!("{reason}. Rendering continues; this is tried again"));
-            self.settle("Autosave failed", outcome);
+            self.settle("Autosave failed", outcome.map_err(|reason| format!("{reason}. It is tried again")));
         }
         if let Some(outcome) = self.shell.dialogs.chosen() {
             self.end_dialog(context, outcome);
@@ -81,7 +81,7 @@ impl Window {
         outcome.ok()
     }
 
-    fn show_opened(&mut self, Opened { saved, film }: Opened) {
+    fn show_opened(&mut self, (saved, film): Opened) {
         let mut document = match saved.kind {
             Kind::Scene => Document::new(Origin::new(saved.recipe.clone(), Source::File(saved.path.clone()))),
             _ => Document::of_film(&saved.recipe, saved.stage()),
@@ -123,6 +123,18 @@ impl Window {
         self.shell.toasts.good(format!("Kept; Compare with has it as number {}", place + 1));
     }
 
+    /// From now on, a picture whose scene was saved is that file, unless it is a stage as in the book.
+    fn take_file(&mut self, path: &Path, saved: &Document) {
+        if saved.stage().is_none() || saved.is_changed() {
+            let origin = Arc::new(saved.saved_in(path));
+            for document in self.changes.all_mut().chain([&mut self.model.document]) {
+                if Arc::ptr_eq(&document.origin, &saved.origin) {
+                    document.origin = Arc::clone(&origin);
+                }
+            }
+        }
+    }
+
     /// Watches the scene file, and takes what was read from it again.
     fn follow_scene_file(&mut self, context: &Context) {
         let origin = Arc::clone(&self.document().origin);
@@ -133,9 +145,7 @@ impl Window {
         };
         let name = name_of(path);
         while let Some(recipe) = self.files.scene_file.reread.take() {
-            let is_own = self.document().checked.file().is_some_and(|saved| saved == *path);
             match recipe {
-                _ if is_own => {}
                 Ok(recipe) => {
                     let reloaded = self.document().reloaded(recipe);
                     self.show_document(reloaded);
