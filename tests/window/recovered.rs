@@ -131,6 +131,41 @@ fn the_films_of_several_pictures_are_there_in_the_next_window() {
     until(&mut next, "no film", |_| films(state.path()).is_empty());
 }
 
+/// Pictures are left for others, for a moment, and with their window. Each goes on where it was.
+#[test]
+fn no_film_is_lost_on_a_walk_through_pictures_and_windows() {
+    let state = tempfile::tempdir().unwrap();
+    let mut harness = window(&format!("{PICTURE} --samples 1"), state.path(), 3600);
+    let (mut samples, mut random) = ([0_u64; 4], 7_u32);
+    for step in 0..24 {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        let (place, way) = ((random >> 24) as usize % 4, (random >> 16) % 3);
+        let degrees = 40.0 + place as f64;
+        // What it had is there again, and then it has more.
+        for (stop, expected) in [(1, samples[place].max(1)), (samples[place] + 8, samples[place] + 8)] {
+            let document = harness.state_mut().document_mut();
+            (document.camera.vfov_degrees, document.stop) = (degrees, Stop::at_samples(stop));
+            until(&mut harness, &format!("step {step}, {expected} samples"), |window| {
+                let count = window.status().samples_per_pixel;
+                angle(window) == degrees && count.max(1) == expected && window.status().phase.is_over()
+            });
+        }
+        samples[place] += 8;
+        make_long(&mut harness);
+        match way {
+            0 => {
+                harness.state_mut().on_exit(None);
+                drop(harness);
+                harness = window("--device cpu", state.path(), 3600);
+            }
+            1 => [Command::NextStage, Command::Undo].into_iter().for_each(|there| send(&mut harness, there)),
+            _ => {}
+        }
+    }
+    assert!(samples.iter().all(|count| *count > 8), "{samples:?}");
+    assert_eq!(films(state.path()).len(), 4);
+}
+
 /// A window of another size shows it scaled.
 #[test]
 fn a_film_comes_back_into_a_window_of_another_size() {
