@@ -11,7 +11,6 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use weekender::app::{Command, Device, Dock, Show, Theme, Window};
 use weekender::cli::{self, Request, WindowOptions};
-use weekender::film::checkpoint;
 use weekender::progressive::Stop;
 use weekender::stages::{Means, Stage};
 
@@ -189,26 +188,25 @@ fn a_film_comes_back_into_a_window_of_another_size() {
 #[test]
 fn window_that_ended_early_resumes_its_film() {
     let state = tempfile::tempdir().unwrap();
-    let mut first = window(&format!("{PICTURE} --samples 4000000000"), state.path(), 0);
+    let mut first = window(&format!("{PICTURE} --samples 40"), state.path(), 0);
+    until(&mut first, "the end", has_samples(40));
     make_long(&mut first);
     until(&mut first, "a film", |_| !films(state.path()).is_empty());
     kill(first, state.path());
-    let film = &films(state.path())[0];
-    let samples = checkpoint::load(film).unwrap().film.sample_count();
 
     // It waits, whatever other windows do.
-    let mut other = window("--stage metal --size 32x18 --device cpu", state.path(), 0);
+    let mut other = window("--stage metal --size 32x18 --samples 4 --device cpu", state.path(), 0);
+    until(&mut other, "the end", has_samples(4));
     make_long(&mut other);
     until(&mut other, "a film of its own", |_| films(state.path()).len() == 2);
     send(&mut other, Command::Undo);
-    until(&mut other, "the picture and its samples", |window| {
-        angle(window) == 31.0 && held(window) >= samples
-    });
+    let is_back = |window: &Window| angle(window) == 31.0 && held(window) == 40;
+    until(&mut other, "the picture and its samples", is_back);
     kill(other, state.path());
     let mut next = window("--device cpu", state.path(), 3600);
     assert_eq!(angle(next.state()), 31.0);
     assert!(says("ended early")(next.state()), "{:?}", next.state().messages());
-    until(&mut next, "its samples", |window| held(window) >= samples);
+    until(&mut next, "its samples", is_back);
 }
 
 #[test]
@@ -231,10 +229,9 @@ fn a_window_that_ended_at_once_is_not_restored_but_offered() {
 #[test]
 fn a_panic_saves_the_film() {
     let state = tempfile::tempdir().unwrap();
-    let mut first = window(&format!("{PICTURE} --samples 4000000000"), state.path(), 3600);
-    until(&mut first, "samples", has_samples(16));
+    let mut first = window(&format!("{PICTURE} --samples 40"), state.path(), 3600);
+    until(&mut first, "the end", has_samples(40));
     make_long(&mut first);
-    let samples = first.state().status().samples_per_pixel;
     let panicked = catch_unwind(AssertUnwindSafe(move || {
         let _window = first;
         panic!("a slip of the window");
@@ -243,7 +240,7 @@ fn a_panic_saves_the_film() {
     assert!(state.path().join("window.lock").exists(), "it did not end in order");
     let mut next = window("--device cpu", state.path(), 3600);
     send(&mut next, Command::Undo);
-    until(&mut next, "its samples", |window| angle(window) == 31.0 && held(window) >= samples);
+    until(&mut next, "its samples", |window| angle(window) == 31.0 && held(window) == 40);
 }
 
 #[test]

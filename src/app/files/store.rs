@@ -38,7 +38,7 @@ const FIRST_SECONDS: Duration = Duration::from_secs(5);
 /// The longest time before something that could not be written is tried again.
 const RETRY: Duration = Duration::from_secs(10);
 
-/// Nor more than this many of them that could not be written.
+/// The most files that wait to be written, as for a disk that is full.
 const WAITING: usize = 32;
 
 /// What the last window was at.
@@ -155,7 +155,8 @@ impl Store {
         if let (Some(early), Some((file, _))) = (self.early, &self.lock) {
             let left = early.saturating_duration_since(Instant::now());
             context.request_repaint_after(left);
-            self.early = (!left.is_zero() || file.set_len(0).is_err()).then_some(early);
+            self.early = (!left.is_zero()).then_some(early);
+            let _ = left.is_zero().then(|| file.set_len(0));
         }
         self.keep(tracing.take_left());
         if !changes.is_in_gesture && self.saved.as_ref() != Some(&model.document) {
@@ -256,7 +257,7 @@ impl Content {
 struct Shelf {
     /// The folder of the films. Without one they are in memory.
     folder: Option<PathBuf>,
-    /// What is not written yet, the next one first.
+    /// What is not written yet, the newest first, after it what has failed.
     waiting: Vec<(PathBuf, Content)>,
     /// How long to wait after a failure, and until when.
     pause: Duration,
@@ -302,11 +303,12 @@ impl Shelf {
     /// Takes what is to be written, in place of an earlier state of it.
     fn put(&mut self, path: PathBuf, content: Content) {
         self.waiting.retain(|(other, _)| *other != path);
-        self.waiting.push((path, content));
-        self.waiting.drain(..self.waiting.len().saturating_sub(WAITING));
+        self.waiting.insert(0, (path, content));
+        self.waiting.truncate(WAITING);
+        self.next = Instant::now();
     }
 
-    /// Writes what has waited longest.
+    /// Writes the next file.
     fn write(&mut self) {
         let (path, content) = self.waiting.remove(0);
         let (begin, outcome) = (Instant::now(), content.write(&path));
@@ -362,7 +364,7 @@ impl Shelf {
     fn find(&self, document: &Document, is_any_size: bool) -> Option<SavedFilm> {
         let (own, picture) = (self.path(document), fingerprint(document));
         let films = self.films().into_iter().map(|(.., path)| path);
-        let paths = self.waiting.iter().rev().map(|(path, _)| path.clone()).chain(films);
+        let paths = self.waiting.iter().map(|(path, _)| path.clone()).chain(films);
         let is_it = |path: &PathBuf| *path == own || is_any_size && path.to_string_lossy().contains(&picture);
         let mut paths: Vec<_> = paths.filter(is_it).collect();
         paths.sort_by_key(|path| *path != own);
