@@ -408,7 +408,7 @@ mod tests {
                         scene: Arc::clone(&document.origin.scene),
                     });
                 },
-                false,
+                true,
                 false,
             ),
         ];
