@@ -38,7 +38,11 @@ fn make_long(harness: &mut Harness<'_, Window>) {
 }
 
 /// The window ends as if it were killed after its first seconds.
-fn kill(harness: Harness<'_, Window>, state: &Path) {
+fn kill(mut harness: Harness<'_, Window>, state: &Path) {
+    for _ in 0..2 {
+        harness.run_steps(2);
+        until(&mut harness, "no edits to write", |window| !window.store.edits.is_open());
+    }
     drop(harness);
     std::fs::write(state.join("window.lock"), "").unwrap();
 }
@@ -302,21 +306,21 @@ fn what_could_not_be_written_is_said_and_tried_again() {
     let mut harness = window(&format!("{PICTURE} --samples 40"), state.path(), 0);
     make_long(&mut harness);
     until(&mut harness, "the end", |window| {
-        window.status().phase.is_over() && says("Autosave failed: ")(window)
+        window.status().phase.is_over() && says("Film not kept: ")(window)
     });
     std::fs::remove_file(&folder).unwrap();
     until(&mut harness, "the film", |window| {
-        films(state.path()).len() == 1 && !says("Autosave failed")(window)
+        films(state.path()).len() == 1 && !says("Film not kept")(window)
     });
 
     std::fs::remove_file(&edits).unwrap();
     std::fs::create_dir_all(edits.join("full")).unwrap();
     harness.state_mut().document_mut().camera.vfov_degrees = 77.0;
-    until(&mut harness, "a failure", says("Autosave failed: "));
+    until(&mut harness, "a failure", says("Edits not kept: "));
     std::fs::remove_dir_all(&edits).unwrap();
     until(&mut harness, "the edits", |window| {
         let text = std::fs::read_to_string(&edits).unwrap_or_default();
-        text.contains("77.0") && !says("Autosave failed")(window)
+        text.contains("77.0") && !says("Edits not kept")(window)
     });
 }
 

@@ -227,11 +227,7 @@ table! {
     Keep "Keep this picture", "Keeps a copy with all its samples, to compare with", key(Key::M), line(),
         needs(is_live, KEPT_IS_SHOWN), also("slot snapshot compare");
     GoOnFromKept "Continue the kept picture", "Traces the kept picture that is compared with, and adds samples",
-        off(|f| match f.model.view.kept_partner() {
-            Some(kept) if kept.document.is_none() => Some("Open the file to continue it".to_owned()),
-            Some(_) => None,
-            None => Some(NOTHING_KEPT.to_owned()),
-        });
+        needs(|f| f.model.view.kept_partner().is_some_and(|kept| kept.document.is_some()), NOTHING_KEPT);
     DeleteKept "Delete the kept picture", "Frees the memory of the kept picture that is compared with",
         needs(has_kept, NOTHING_KEPT);
 

@@ -1,12 +1,13 @@
 //! What outlives its picture and the window: films that took long, each in a file named by its job, and the last edits.
-//! A thread writes them, again and again until it succeeds, and finds the film of a picture that comes back.
+//! They are written by threads, again and again until it succeeds. The one of the films finds that of a picture that comes
+//! back.
 
 use super::describer;
 use super::edits::{self, STEPS};
 use crate::app::commands::Films;
 use crate::app::model::changes::Changes;
 use crate::app::model::{Document, Model, Sizing};
-use crate::app::toolkit::{Answer, Answers, caught};
+use crate::app::toolkit::{Answers, caught};
 use crate::app::tracing::Tracing;
 use crate::app::tracing::tracer::{Left, Tracer};
 use crate::film::{Checksum, Description, Film, checkpoint, key};
@@ -38,7 +39,7 @@ const FIRST_SECONDS: Duration = Duration::from_secs(5);
 /// The longest time before something that could not be written is tried again.
 const RETRY: Duration = Duration::from_secs(10);
 
-/// The most files that wait to be written, as for a disk that is full.
+/// The most films that wait to be written, as for a disk that is full.
 const WAITING: usize = 32;
 
 /// What the last window was at.
@@ -46,9 +47,8 @@ const WAITING: usize = 32;
 pub struct Last {
     /// The last steps of its history, with the picture at its end.
     pub steps: Vec<Document>,
-    pub has_ended_early: bool,
-    /// It ended in its first seconds.
-    pub has_hardly_begun: bool,
+    /// The length of its lock, which it has left because it did not end in order: 0 after its first seconds.
+    pub lock: Option<u64>,
 }
 
 /// The film of a picture that has come back, or the one of the command line.
@@ -68,7 +68,15 @@ pub struct Store {
     /// The right to save edits, which the first window has. Its file is there until the window ends in order, and has a
     /// byte during the first seconds.
     lock: Option<(File, PathBuf)>,
-    edits: PathBuf,
+    /// The file of the edits, and what became of it.
+    path: PathBuf,
+    pub edits: Answers<()>,
+    /// The edits that were saved last.
+    saved: Option<Document>,
+    /// When edits are written again that could not be.
+    retry: Instant,
+    /// How long to wait after a failure.
+    pause: Duration,
     /// The end of the first seconds, until it is over.
     early: Option<Instant>,
     every: Duration,
@@ -76,15 +84,13 @@ pub struct Store {
     due: Instant,
     /// The run and the samples of the film that was written last while it was traced.
     copied: (u64, u64),
-    /// The edits that were saved last.
-    saved: Option<Document>,
     /// The picture whose film was sought last.
     pub sought: Option<Document>,
     /// The film of the command line, and its job.
     pub named: Option<(PathBuf, RenderJob)>,
     pub found: Answers<Found>,
-    /// The first of several failures in a row, and the success after them.
-    pub outcomes: Answers<()>,
+    /// Why a film could not be written, and that nothing waits any more.
+    pub outcomes: Receiver<Result<(), String>>,
     films: Arc<Mutex<Films>>,
 }
 
@@ -98,32 +104,32 @@ impl Store {
         let path = directory.filter(is_there).map(|directory| directory.join("window.lock"));
         let left = path.as_ref().and_then(|path| fs::metadata(path).ok());
         let lock = path.and_then(|path| Some((lock_path(&path, PATIENCE).ok()?, path)));
-        let edits = directory.unwrap_or(Path::new("")).join("edits.json");
+        let path = directory.unwrap_or(Path::new("")).join("edits.json");
         let last = lock.as_ref().map_or_else(Last::default, |(file, _)| {
             let _ = file.set_len(1);
-            Last {
-                steps: edits::read(&edits),
-                has_ended_early: left.is_some(),
-                has_hardly_begun: left.is_some_and(|left| left.len() > 0),
-            }
+            Last { steps: edits::read(&path), lock: left.map(|left| left.len()) }
         });
-        let ((tasks, receiver), films) = (channel(), Arc::default());
-        let mut shelf = Shelf::new(directory.map(|directory| directory.join("films")));
-        (shelf.pause, shelf.kept) = (every.clamp(Duration::from_millis(50), RETRY), Arc::clone(&films));
+        let ((tasks, receiver), (told, outcomes), films) = (channel(), channel(), Arc::default());
+        let mut shelf = Shelf::new(directory.map(|directory| directory.join("films")), told);
+        let pause = every.clamp(Duration::from_millis(50), RETRY);
+        (shelf.pause, shelf.kept) = (pause, Arc::clone(&films));
         let store = Store {
             tasks: Some(tasks),
             thread: thread::Builder::new().name("store".to_owned()).spawn(move || shelf.run(&receiver)).ok(),
             early: lock.as_ref().map(|_| Instant::now() + FIRST_SECONDS),
             lock,
-            edits,
+            path,
+            edits: Answers::default(),
+            saved: last.steps.last().cloned(),
+            retry: Instant::now(),
+            pause,
             every,
             due: Instant::now(),
             copied: (0, 0),
-            saved: last.steps.last().cloned(),
             sought: None,
             named: None,
             found: Answers::default(),
-            outcomes: Answers::default(),
+            outcomes,
             films,
         };
         (store, last)
@@ -132,12 +138,6 @@ impl Store {
     fn task(&self, task: impl FnOnce(&mut Shelf) + Send + 'static) {
         // Without a thread nothing is kept.
         let _ = self.tasks.as_ref().map(|tasks| tasks.send(Box::new(task)));
-    }
-
-    /// Tells outcomes from now on.
-    pub fn begin(&mut self, context: &Context) {
-        let told = self.outcomes.answer(context);
-        self.task(|shelf| shelf.told = Some(told));
     }
 
     /// The films in the folder.
@@ -159,9 +159,7 @@ impl Store {
             let _ = left.is_zero().then(|| file.set_len(0));
         }
         self.keep(tracing.take_left());
-        if !changes.is_in_gesture && self.saved.as_ref() != Some(&model.document) {
-            self.save_edits(&model.document, changes);
-        }
+        self.save_edits(context, &model.document, changes);
         let status = tracing.main.status();
         let (now, wait) =
             ((status.run, status.samples_per_pixel), self.due.saturating_duration_since(Instant::now()));
@@ -172,6 +170,8 @@ impl Store {
         {
             (self.copied, self.due) = (now, Instant::now() + self.every.max(self.films().took * SHARE));
             self.keep(vec![copy]);
+            // To see what becomes of it.
+            context.request_repaint_after(Duration::from_secs(1));
         }
         if !changes.is_moving() {
             self.seek(context, model);
@@ -184,17 +184,28 @@ impl Store {
                 // The render may have failed.
                 let Ok((film, status)) = film.recv() else { return };
                 let description = describer(&document, &status, seconds_before)(&film);
-                shelf.put(shelf.path(&document), Content::Film(film, description));
+                shelf.put(shelf.path(&document), film, description);
             });
         }
     }
 
-    fn save_edits(&mut self, document: &Document, changes: &Changes) {
-        let (path, steps) = (self.edits.clone(), changes.last_steps(document, STEPS));
-        if self.lock.is_some() {
-            self.task(move |shelf| shelf.put(path, Content::Edits(edits::to_text(&steps))));
+    /// Saves edits at once, unless the user is at it or something prevents it.
+    fn save_edits(&mut self, context: &Context, document: &Document, changes: &Changes) {
+        let is_new = self.saved.as_ref() != Some(document) && !changes.is_in_gesture;
+        let wait = self.retry.saturating_duration_since(Instant::now());
+        if self.lock.is_none() || !is_new || self.edits.is_open() {
+        } else if !wait.is_zero() {
+            context.request_repaint_after(wait);
+        } else {
+            let (path, steps) = (self.path.clone(), changes.last_steps(document, STEPS));
+            self.edits.ask("edits", context, move || write_edits(&path, &steps));
+            self.saved = Some(document.clone());
         }
-        self.saved = Some(document.clone());
+    }
+
+    /// Edits could not be saved: tries again after a while.
+    pub fn retry_edits(&mut self) {
+        (self.saved, self.retry) = (None, Instant::now() + self.pause);
     }
 
     fn seek(&mut self, context: &Context, model: &Model) {
@@ -220,7 +231,10 @@ impl Store {
 
     /// Keeps everything, at the end of the window. What cannot be written is saved elsewhere.
     pub fn end(&mut self, document: &Document, changes: &Changes, tracing: &mut Tracing) {
-        self.save_edits(document, changes);
+        let _ = self.edits.wait();
+        if self.lock.is_some() && self.saved.as_ref() != Some(document) {
+            let _ = write_edits(&self.path, &changes.last_steps(document, STEPS));
+        }
         tracing.tracers_mut().for_each(Tracer::leave);
         self.keep(tracing.take_left());
         self.tasks = None;
@@ -231,26 +245,18 @@ impl Store {
     }
 }
 
-enum Content {
-    Film(Film, Description),
-    Edits(String),
+fn write_edits(path: &Path, steps: &[Document]) -> Result<(), String> {
+    write_text(path, &edits::to_text(steps)).map_err(|error| error.to_string())
 }
 
-impl Content {
-    /// Writes it. A film does not replace one that has as many samples.
-    fn write(&self, path: &Path) -> Result<(), String> {
-        let folder = path.parent().unwrap_or(path);
-        fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-        let is_there = |film: &Film| {
-            checkpoint::read_head(path).is_ok_and(|there| there.samples.count() >= film.sample_count())
-        };
-        let written = match self {
-            Content::Edits(text) => write_text(path, text),
-            Content::Film(film, _) if is_there(film) => Ok(()),
-            Content::Film(film, description) => checkpoint::save(path, film, description),
-        };
-        written.map_err(|error| error.to_string())
+/// Writes a film. It does not replace one that has as many samples.
+fn write(path: &Path, film: &Film, about: &Description) -> Result<(), String> {
+    if checkpoint::read_head(path).is_ok_and(|there| there.samples.count() >= film.sample_count()) {
+        return Ok(());
     }
+    let folder = path.parent().unwrap_or(path);
+    fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    checkpoint::save(path, film, about).map_err(|error| error.to_string())
 }
 
 /// The thread's side of the store.
@@ -258,19 +264,18 @@ struct Shelf {
     /// The folder of the films. Without one they are in memory.
     folder: Option<PathBuf>,
     /// What is not written yet, the newest first, after it what has failed.
-    waiting: Vec<(PathBuf, Content)>,
+    waiting: Vec<(PathBuf, Film, Description)>,
     /// How long to wait after a failure, and until when.
     pause: Duration,
     next: Instant,
     kept: Arc<Mutex<Films>>,
-    told: Option<Answer<()>>,
-    has_failed: bool,
+    told: Sender<Result<(), String>>,
 }
 
 impl Shelf {
-    fn new(folder: Option<PathBuf>) -> Self {
+    fn new(folder: Option<PathBuf>, told: Sender<Result<(), String>>) -> Self {
         let (waiting, pause, next) = (Vec::new(), Duration::ZERO, Instant::now());
-        Shelf { folder, waiting, pause, next, kept: Arc::default(), told: None, has_failed: false }
+        Shelf { folder, waiting, pause, next, kept: Arc::default(), told }
     }
 
     fn run(mut self, tasks: &Receiver<Task>) {
@@ -290,8 +295,8 @@ impl Shelf {
             };
             done.unwrap_or_else(|reason| self.tell(Err(reason)));
         }
-        for (path, content) in self.waiting.drain(..).filter(|_| self.folder.is_some()) {
-            if let (Err(_), Content::Film(film, about)) = (content.write(&path), content) {
+        for (path, film, about) in self.waiting.drain(..).filter(|_| self.folder.is_some()) {
+            if write(&path, &film, &about).is_err() {
                 let saved = saved::rescue(&[], about.get(key::SCENE).unwrap_or("film"), &film, &about);
                 let words = |path: PathBuf| format!("the picture's samples were saved in {}", path.display());
                 console::note(&saved.map_or_else(|lost| lost, words));
@@ -300,33 +305,31 @@ impl Shelf {
         self.note(Duration::ZERO);
     }
 
-    /// Takes what is to be written, in place of an earlier state of it.
-    fn put(&mut self, path: PathBuf, content: Content) {
-        self.waiting.retain(|(other, _)| *other != path);
-        self.waiting.insert(0, (path, content));
+    /// Takes a film to be written, in place of an earlier state of it.
+    fn put(&mut self, path: PathBuf, film: Film, about: Description) {
+        self.waiting.retain(|(other, ..)| *other != path);
+        self.waiting.insert(0, (path, film, about));
         self.waiting.truncate(WAITING);
         self.next = Instant::now();
     }
 
     /// Writes the next file.
     fn write(&mut self) {
-        let (path, content) = self.waiting.remove(0);
-        let (begin, outcome) = (Instant::now(), content.write(&path));
+        let (path, film, about) = self.waiting.remove(0);
+        let (begin, outcome) = (Instant::now(), write(&path, &film, &about));
         if outcome.is_ok() {
             self.note(begin.elapsed());
         } else {
-            self.waiting.push((path, content));
+            self.waiting.push((path, film, about));
             self.next = Instant::now() + self.pause;
         }
         self.tell(outcome);
     }
 
-    fn tell(&mut self, outcome: Result<(), String>) {
+    fn tell(&self, outcome: Result<(), String>) {
         // After a success, something else may still fail.
-        let is_news = outcome.is_err() != self.has_failed && (outcome.is_err() || self.waiting.is_empty());
-        if let Some(told) = self.told.as_ref().filter(|_| is_news) {
-            self.has_failed = outcome.is_err();
-            told.give(outcome);
+        if outcome.is_err() || self.waiting.is_empty() {
+            let _ = self.told.send(outcome);
         }
     }
 
@@ -354,7 +357,7 @@ impl Shelf {
     fn delete(&mut self, of: Option<Document>) {
         let of = of.map(|document| self.path(&document));
         let is_kept = |path: &Path| of.as_ref().is_some_and(|of| of != path);
-        self.waiting.retain(|(path, content)| is_kept(path) || matches!(content, Content::Edits(_)));
+        self.waiting.retain(|(path, ..)| is_kept(path));
         let films = self.films().into_iter().filter(|(.., path)| !is_kept(path));
         films.for_each(|(.., path)| drop(fs::remove_file(path)));
         self.note(Duration::ZERO);
@@ -364,7 +367,7 @@ impl Shelf {
     fn find(&self, document: &Document, is_any_size: bool) -> Option<SavedFilm> {
         let (own, picture) = (self.path(document), fingerprint(document));
         let films = self.films().into_iter().map(|(.., path)| path);
-        let paths = self.waiting.iter().map(|(path, _)| path.clone()).chain(films);
+        let paths = self.waiting.iter().map(|(path, ..)| path.clone()).chain(films);
         let is_it = |path: &PathBuf| *path == own || is_any_size && path.to_string_lossy().contains(&picture);
         let mut paths: Vec<_> = paths.filter(is_it).collect();
         paths.sort_by_key(|path| *path != own);
@@ -372,8 +375,7 @@ impl Shelf {
     }
 
     fn read(&self, path: &Path, mut document: Document) -> Option<SavedFilm> {
-        let waiting = self.waiting.iter().find(|(other, _)| path == other);
-        if let Some((_, Content::Film(film, about))) = waiting {
+        if let Some((_, film, about)) = self.waiting.iter().find(|(other, ..)| path == other) {
             let seconds = about.get(key::SECONDS).and_then(|seconds| seconds.parse().ok());
             return Some(SavedFilm { film: film.try_copy().ok()?, seconds });
         }
@@ -426,14 +428,14 @@ mod tests {
     }
 
     fn shelf(directory: &Path) -> Shelf {
-        Shelf::new(Some(directory.to_owned()))
+        Shelf::new(Some(directory.to_owned()), channel().0)
     }
 
     fn put(shelf: &mut Shelf, document: &Document, samples: u64) {
         let mut film = Film::new(document.size()[0], document.size()[1]);
         film.record(0..samples, 0).unwrap();
         let description = Description::new(&file::to_picture_toml(&document.recipe()));
-        shelf.put(shelf.path(document), Content::Film(film, description));
+        shelf.put(shelf.path(document), film, description);
     }
 
     fn found(shelf: &Shelf, document: &Document, is_any_size: bool) -> Option<u64> {

@@ -10,7 +10,7 @@ pub mod theme;
 mod toasts;
 pub mod widgets;
 
-pub use answers::{Answer, Answers, Query, caught};
+pub use answers::{Answers, Query, caught};
 pub use finder::{Finder, has_words};
 pub use texture::Texture;
 pub use toasts::Toasts;

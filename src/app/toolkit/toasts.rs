@@ -70,7 +70,9 @@ impl Toasts {
     /// is about is said before its colon.
     pub fn bad(&mut self, text: impl Into<String>) {
         let text = text.into();
-        console::note(&format!("weekender: {text}"));
+        if !self.texts().any(|known| known == text) {
+            console::note(&format!("weekender: {text}"));
+        }
         self.add(text, (true, true), &[]);
     }
 

@@ -58,8 +58,8 @@ impl Window {
     pub fn with(options: WindowOptions, storage: Option<&dyn eframe::Storage>) -> Result<Self> {
         let (mut remembered, view) = Stored::read(storage);
         let directory = options.state_directory.as_deref();
-        let (mut store, Last { steps, has_ended_early, has_hardly_begun }) =
-            Store::open(directory, options.autosave_every);
+        let (mut store, Last { steps, lock }) = Store::open(directory, options.autosave_every);
+        let has_hardly_begun = lock > Some(0);
         if has_hardly_begun {
             (remembered.device, remembered.mine) = (Device::default(), None);
         }
@@ -89,7 +89,7 @@ impl Window {
         if has_hardly_begun && !is_asked_for {
             let words = "The last window ended soon after it began. This one begins without its picture";
             shell.toasts.offer(words, &[Command::Undo]);
-        } else if has_ended_early && goes_on && !steps.is_empty() {
+        } else if lock.is_some() && goes_on && !steps.is_empty() {
             shell.toasts.good("The last window ended early. This is the picture that it showed");
         }
         let view = if goes_on { view } else { ViewState::default() };
@@ -179,7 +179,6 @@ impl Window {
         // A frame can take long while the device prepares a large scene.
         context.options_mut(|options| options.input_options.max_click_duration = 5.0);
         self.tracing.main.wake(context);
-        self.store.begin(context);
     }
 
     fn take_input(&mut self, context: &egui::Context) {

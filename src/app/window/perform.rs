@@ -177,7 +177,13 @@ impl Window {
                     view.toggle(Mode::Wipe);
                 }
             }
-            C::GoOnFromKept => self.go_on_from_kept(),
+            C::GoOnFromKept => {
+                if let Some(document) = view.kept_partner().and_then(|kept| kept.document.clone()) {
+                    // Its film is in the store.
+                    self.show_document(Document { has_own_size: true, ..document });
+                    self.model.view.end_comparison();
+                }
+            }
             C::DeleteKept => view.delete_kept(),
 
             C::Stages => shell.dialogs.open(Dialog::Stages(stage_list::list(snapshot))),
@@ -608,14 +614,6 @@ impl Window {
             self.tracing.pause(context);
         } else {
             self.tracing.resume();
-        }
-    }
-
-    /// Goes on with the chosen kept picture, whose film is in the store.
-    pub(super) fn go_on_from_kept(&mut self) {
-        if let Some(document) = self.model.view.kept_partner().and_then(|kept| kept.document.clone()) {
-            self.show_document(Document { has_own_size: true, ..document });
-            self.model.view.end_comparison();
         }
     }
 

@@ -61,8 +61,13 @@ impl Window {
         while let Some(outcome) = self.store.found.take() {
             self.settle("Not resumed", outcome).into_iter().for_each(|found| self.go_on(found));
         }
-        while let Some(outcome) = self.store.outcomes.take() {
-            self.settle("Autosave failed", outcome.map_err(|reason| format!("{reason}. It is tried again")));
+        while let Ok(outcome) = self.store.outcomes.try_recv() {
+            self.settle("Film not kept", outcome);
+        }
+        while let Some(outcome) = self.store.edits.take() {
+            if self.settle("Edits not kept", outcome).is_none() {
+                self.store.retry_edits();
+            }
         }
         if let Some(outcome) = self.shell.dialogs.chosen() {
             self.end_dialog(context, outcome);
@@ -111,9 +116,10 @@ impl Window {
         }
         if let Some(path) = named {
             let place = self.document().place();
-            let changed = "the picture was changed before it had been read; open the file to continue it";
-            let resumed = self.settle("Not resumed", is_same.then_some(place).ok_or(changed.to_owned()));
-            resumed.into_iter().for_each(|place| self.shell.toasts.good(format!("Resumed {place}")));
+            self.shell.toasts.good(match is_same {
+                true => format!("Resumed {place}"),
+                false => format!("The picture has changed meanwhile; open {} to continue it", name_of(&path)),
+            });
             self.model.remembered.note_recent(&path);
         }
     }
