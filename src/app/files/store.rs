@@ -231,8 +231,8 @@ impl Store {
 
     /// Keeps everything, at the end of the window. What cannot be written is saved elsewhere.
     pub fn end(&mut self, document: &Document, changes: &Changes, tracing: &mut Tracing) {
-        let _ = self.edits.wait();
-        if self.lock.is_some() && self.saved.as_ref() != Some(document) {
+        let has_failed = self.edits.wait().is_some_and(|outcome| outcome.is_err());
+        if self.lock.is_some() && (has_failed || self.saved.as_ref() != Some(document)) {
             let _ = write_edits(&self.path, &changes.last_steps(document, STEPS));
         }
         tracing.tracers_mut().for_each(Tracer::leave);
