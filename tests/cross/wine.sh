@@ -197,12 +197,12 @@ report "its stages can be turned: $(title)" $?
 xdotool key alt+F4
 wait %%
 report 'it closes' $?
-kept=$(echo "$WINEPREFIX"/drive_c/users/*/AppData/Local/weekender)
-exists 'its edits are kept' "$kept/edits.json"
-rm -f "$kept"/films/*.exr
+kept=$(echo "$WINEPREFIX"/drive_c/users/*/AppData/Local/weekender/edits.json)
+exists 'its edits are kept' "$kept"
+rm -f "$kept"
 windows "$work/helper.exe" event 2 15000 "$work/weekender.exe"
 [ $? = 129 ]
 report 'it closes with its console' $?
-exists 'its film is kept' "$kept"/films/*.exr
+exists 'its edits are kept' "$kept"
 
 summary
