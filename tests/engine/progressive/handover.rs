@@ -26,6 +26,21 @@ fn another_backend_continues_the_same_film() {
     assert_eq!(progressive.take_film(), Some(expected(3000)));
 }
 
+/// The pass in progress does not spoil it.
+#[test]
+fn a_render_that_is_replaced_hands_its_film_over() {
+    let mut progressive = started(CPU, Plan::endless());
+    for width in [3, 2] {
+        wait_for(&progressive, 100);
+        let (sender, receiver) = channel();
+        progressive.hand_over(move |film, status| sender.send((film, status.samples_per_pixel)).unwrap());
+        progressive.start(RenderRequest::new(job(width), CPU, Plan::endless()));
+        let (film, samples) = receiver.recv_timeout(PATIENCE).unwrap();
+        assert!(samples >= 100 && film.sample_count() == samples, "{samples}");
+        assert!(film.width() != 2 || film == expected(samples));
+    }
+}
+
 #[test]
 fn history_ends_where_another_backend_takes_over() {
     let progressive = started_with(CPU, Plan::samples(3000), |choice| Box::new(Fake::new(choice.name())));
