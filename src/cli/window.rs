@@ -41,9 +41,9 @@ pub struct WindowOptions {
     pub is_saved: bool,
     /// Whether to open the default picture instead of the last one.
     pub is_fresh: bool,
-    /// Tracing time between autosaves.
+    /// Time between two writes of a film that is traced.
     pub autosave_every: Duration,
-    /// The directory for autosaves; `None` disables them.
+    /// The directory for edits and films; without it they end with the window.
     pub state_directory: Option<PathBuf>,
     pub draw_with: DrawWith,
 }

@@ -38,7 +38,8 @@ impl Texture {
     /// The texture for drawing, with square or smoothed pixels.
     pub fn id(&self, context: &Context, options: TextureOptions) -> TextureId {
         let mut slot = self.handle.borrow_mut();
-        let is_stale = self.is_stale.replace(false) || slot.as_ref().is_some_and(|(_, old)| *old != options);
+        let is_new = self.is_stale.replace(false);
+        let is_stale = slot.as_ref().is_some_and(|(_, old)| is_new || *old != options);
         let fitting = || fitting(&self.image, context.input(|input| input.max_texture_side));
         let (handle, old) =
             slot.get_or_insert_with(|| (context.load_texture("picture", fitting(), options), options));
