@@ -1,7 +1,7 @@
 // The check of the reader's own picture. The picture goes to the program, compiled for browsers, which runs in a worker
-// and has nothing but that file; its answer is shown where the picture was dropped.
+// and sees only that file; its answer is shown where the picture was dropped.
 {
-  const { program, stages, scale } = JSON.parse(document.getElementById("check-data").textContent);
+  const { program, stages, scale, pixel_limit: pixelLimit } = JSON.parse(document.getElementById("check-data").textContent);
   const make = (name, properties, ...inside) => {
     const element = Object.assign(document.createElement(name), properties);
     element.append(...inside);
@@ -20,27 +20,26 @@
   const input = make("input", { type: "file", accept: ".ppm,.pgm,.pnm,.png,image/png", hidden: true, ariaLabel: "Your picture" });
   document.body.append(input);
 
-  // What is checked: the file, the stage that the reader has chosen, and where the answer is shown.
-  let file, stage, place, worker, timer, run = 0, urls = [];
+  // The file with its bytes, the stage that the reader has chosen, and the place of the answer.
+  let file, bytes, stage, place, worker, timer, run = 0, urls = [];
 
-  // The places: below the title, and at the mistakes of each chapter.
+  // The places: below the title, and at the mistakes of each chapter. Without the program, one line at the end of the first
+  // chapter says how to check a picture.
   const boxes = [];
   const addBox = (box, text) => {
     const choose = button("Choose a file", () => {
       place = box;
       input.click();
     });
-    const how = ["Drop the PPM or PNG that your ray tracer wrote here or anywhere on this page, or paste it. It does not leave your computer. ", choose];
-    box.append(make("p", {}, make("strong", { textContent: `${text} ` }), ...(program ? how : missing())));
+    box.append(make("p", {}, make("strong", { textContent: `${text} ` }), "Drop the PPM or PNG that your ray tracer wrote here or anywhere on this page, or paste it. It does not leave your computer. ", choose));
     boxes.push(box);
   };
   const missing = () => [
-    "This copy of the page lacks ", make("code", { textContent: "check.js" }), ", which checks pictures in the browser. It comes with a release; in a checkout, ",
-    make("code", { textContent: "assets/package/cross.sh web" }), " builds it. Then make the page again. Or ", install(), " and run ",
-    make("code", { textContent: "weekender check mine.ppm" }), ".",
+    "This copy of the page cannot check pictures; ", make("code", { textContent: "weekender check mine.ppm" }), " can: ", install(), ".",
   ];
-  addBox(document.querySelector(".cover .check-box"), "Is your own picture right?");
-  for (const heading of program ? document.querySelectorAll("h3[id$='-what-a-mistake-looks-like']") : []) {
+  if (program) addBox(document.querySelector(".cover .check-box"), "Is your own picture right?");
+  else document.querySelector(".chapter").append(make("p", { className: "check-missing" }, ...missing()));
+  for (const heading of program ? document.querySelectorAll("h3[data-mistakes]") : []) {
     let last = heading;
     while (last.nextElementSibling?.matches(".mistakes, .mistakes-hint")) last = last.nextElementSibling;
     const box = make("div", { className: "check-box" });
@@ -71,7 +70,7 @@ onmessage = ({ data: [module, args, files] }) => {
     return { module: await WebAssembly.compile(bytes), source: URL.createObjectURL(new Blob([source], { type: "text/javascript" })) };
   };
   // A module with one SIMD instruction.
-  const hasSimd = () => globalThis.DecompressionStream && WebAssembly.validate(Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11));
+  const hasSimd = () => WebAssembly.validate(Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11));
 
   const end = () => {
     worker?.terminate();
@@ -100,6 +99,13 @@ onmessage = ({ data: [module, args, files] }) => {
   const closing = () => make("p", { className: "check-buttons" }, button("Another picture", () => input.click()), button("Close", close));
 
   const LARGEST = 1 << 28;
+  // The pixels that the head of a PNG or a PPM promises.
+  const pixelsOf = (data) => {
+    const view = new DataView(data), head = new TextDecoder("latin1").decode(data.slice(0, 512));
+    if (head.startsWith("\x89PNG") && data.byteLength > 24) return view.getUint32(16) * view.getUint32(20);
+    const [, width, height] = head.replace(/#.*/g, "").match(/^P\d\s*(\d+)\s+(\d+)/) ?? [];
+    return width * height || 0;
+  };
 
   // Checks `file` in place of whatever is checked or shown.
   const check = async () => {
@@ -112,11 +118,25 @@ onmessage = ({ data: [module, args, files] }) => {
     show(`Checking ${file.name}`, true,
       make("p", {}, make("strong", { textContent: `Comparing ${file.name} with ${what} and the known mistakes. ` }), seconds), tried,
       make("p", { className: "check-buttons" }, button("Cancel (Esc)", cancel)));
-    if (!hasSimd()) return refuse("This browser’s WebAssembly has no SIMD, which the program needs. Update the browser, or ", install(), " and run ", make("code", { textContent: "weekender check" }), ".");
+    const instead = [" Update the browser, or ", install(), " and run ", make("code", { textContent: "weekender check" }), "."];
+    if (!program) return refuse(...missing());
+    if (!hasSimd()) return refuse("This browser’s WebAssembly has no SIMD, which the program needs.", ...instead);
+    if (!globalThis.DecompressionStream) return refuse("This browser cannot unpack the program: it has no DecompressionStream.", ...instead);
     if (file.size > LARGEST) return refuse(`It has ${Math.round(file.size / 1e6)} MB, more than ${LARGEST >> 20} MiB; the book’s 400 x 225 pixels are enough for a check.`);
     const own = file, mine = run, isOther = () => mine !== run;
     try {
-      const [{ module, source }, data] = await Promise.all([(loaded ??= load()), own.arrayBuffer()]);
+      // The bytes are read once, since a file may change; each check gets a copy.
+      const data = await (bytes ??= own.arrayBuffer()).catch(() => null);
+      if (isOther()) return;
+      if (!data) {
+        bytes = undefined;
+        return refuse("The file cannot be read, or has changed since. Choose it again.");
+      }
+      if (pixelsOf(data) > pixelLimit) return refuse("It has more pixels than the memory of a page allows. Render it at 400 x 225, which is enough for a check.");
+      const { module, source } = await (loaded ??= load().catch((error) => {
+        loaded = undefined;
+        throw error;
+      }));
       if (isOther()) return;
       worker = new Worker(source);
       worker.addEventListener("error", ({ message }) => refuse(`The program cannot be started: ${message}`));
@@ -128,8 +148,6 @@ onmessage = ({ data: [module, args, files] }) => {
         } else if (result?.files[FINDING]) {
           end();
           answer(JSON.parse(new TextDecoder().decode(result.files[FINDING])), result.files);
-        } else if (lines.some((text) => text.startsWith("memory allocation of"))) {
-          refuse("It has more pixels than the memory of a page allows. Render it at 400 x 225, which is enough for a check.");
         } else {
           const reason = lines.find((text) => text.startsWith("error: "))?.slice(7) ?? `The program has failed: ${lines.at(-1) ?? failure}`;
           refuse(`${reason.startsWith(own.name) ? reason : reason[0].toUpperCase() + reason.slice(1)}.`);
@@ -139,7 +157,6 @@ onmessage = ({ data: [module, args, files] }) => {
       const chosen = stage ? ["--stage", stage] : [];
       worker.postMessage([module, ["check", "--progress", "on", "--out", FOLDER, "--json", FINDING, ...chosen, "--", name], { [name]: new Uint8Array(data) }]);
     } catch (error) {
-      loaded = undefined;
       if (!isOther()) refuse(...(error.message === "missing" ? missing() : [`${error}`]));
     }
   };
@@ -159,7 +176,7 @@ onmessage = ({ data: [module, args, files] }) => {
     const said = `${found.verdict}. ${found.explanation}.`;
     const look = { right: "good", cannot_check: "bad" }[found.kind] ?? "warn";
     const inside = [make("p", { className: `check-verdict check-${look}`, textContent: found.verdict }), make("p", { textContent: `${found.explanation}.` })];
-    if (found.change) inside.push(make("p", { className: "check-change" }, make("small", { textContent: found.kind === "right" ? "Note" : "What to change" }), ...withCode(found.change)));
+    if (found.change) inside.push(make("p", { className: "check-change" }, make("small", { textContent: found.kind === "right" ? "Note" : "To change" }), ...withCode(found.change)));
     for (const { title, remedy } of found.damages.filter(({ title }) => title.toLowerCase() !== found.verdict.toLowerCase())) {
       inside.push(make("p", {}, make("strong", { textContent: "The file, too: " }), ...withCode(`${title}; ${remedy}.`)));
     }
@@ -201,7 +218,7 @@ onmessage = ({ data: [module, args, files] }) => {
     const both = make("div", { className: "check-pictures" }, picture("ours", "Ours"), picture("mine", `Yours: ${file.name}`), picture("difference", "Where the two differ, and by how much"));
     for (const [x, y] of places) {
       const mark = both.appendChild(make("span", { className: "check-mark" }));
-      Object.assign(mark.style, { left: `${(100 * x) / width}%`, top: `${(100 * y) / height}%`, width: `${1000 / width}%` });
+      Object.assign(mark.style, { left: `${(100 * (x + 0.5)) / width}%`, top: `${(100 * (y + 0.5)) / height}%`, width: `${1000 / width}%` });
     }
     const labels = make("p", { className: "check-names" }, make("span", { textContent: "Yours" }), make("span", { textContent: "Ours" }));
     const wipe = make("input", { type: "range", min: 0, max: 100, value: 50, step: 0.5, ariaLabel: "Boundary between your picture and ours" });
@@ -233,40 +250,43 @@ onmessage = ({ data: [module, args, files] }) => {
   const take = (files, at) => {
     if (!files?.length) return false;
     [file] = files;
-    stage = undefined;
-    place = at?.closest(".check-box, .cover > *, .chapter > *") ?? place ?? boxes[0];
+    stage = bytes = undefined;
+    place = at?.closest(".check-box, .cover > *, .chapter > *") ?? place ?? boxes[0] ?? document.querySelector(".check-missing");
     // Dropped on the answer, the next one comes there, too.
     if (place === panel) place = panel.previousElementSibling;
     check();
     return true;
   };
-  if (program) {
-    input.addEventListener("change", () => {
-      take(input.files);
-      input.value = "";
-    });
-    let isOwn = false;
-    addEventListener("dragstart", () => (isOwn = true));
-    addEventListener("dragend", () => (isOwn = false));
-    const isFile = (event) => !isOwn && event.dataTransfer?.types.includes("Files");
-    const mark = (isOver) => document.documentElement.classList.toggle("check-over", isOver);
-    addEventListener("dragover", (event) => {
-      if (!isFile(event)) return;
-      event.preventDefault();
-      event.dataTransfer.dropEffect = "copy";
-      mark(true);
-    });
-    addEventListener("dragleave", (event) => event.relatedTarget || mark(false));
-    addEventListener("drop", (event) => {
-      mark(false);
-      if (!isFile(event)) return;
-      event.preventDefault();
-      take(event.dataTransfer.files, event.target);
-    });
-    addEventListener("paste", (event) => {
-      const middle = document.elementFromPoint(innerWidth / 2, innerHeight / 2);
-      if (take(event.clipboardData?.files, middle)) event.preventDefault();
-    });
-    addEventListener("keydown", (event) => event.key === "Escape" && timer && cancel());
-  }
+  input.addEventListener("change", () => {
+    take(input.files);
+    input.value = "";
+  });
+  // What is dragged from the page itself carries a mark.
+  const OWN = "text/x-weekender";
+  addEventListener("dragstart", (event) => event.dataTransfer?.setData(OWN, ""));
+  const isFile = ({ dataTransfer }) => dataTransfer?.types.includes("Files") && !dataTransfer.types.includes(OWN);
+  const mark = (isOver) => document.documentElement.classList.toggle("check-over", isOver);
+  addEventListener("dragover", (event) => {
+    if (!isFile(event)) return;
+    event.preventDefault();
+    event.dataTransfer.dropEffect = "copy";
+    mark(true);
+  });
+  addEventListener("dragleave", (event) => event.relatedTarget || mark(false));
+  addEventListener("drop", (event) => {
+    mark(false);
+    if (!isFile(event)) return;
+    event.preventDefault();
+    take(event.dataTransfer.files, event.target);
+  });
+  addEventListener("paste", (event) => {
+    if (!program || event.target.closest?.("input, textarea, select, [contenteditable]")) return;
+    const middle = document.elementFromPoint(innerWidth / 2, innerHeight / 2);
+    if (take(event.clipboardData?.files, middle)) event.preventDefault();
+  });
+  addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || event.defaultPrevented || !timer) return;
+    event.preventDefault();
+    cancel();
+  });
 }

@@ -2,7 +2,7 @@
 
 const REST_MS = 200;
 const MOST_SCALE = 8;
-const FIRST_SLIDERS = ["fuzz", "index", "defocus", "depth", "vfov", "samples"];
+const FIRST_SLIDERS = ["fuzz", "index", "defocus", "bounces", "vfov", "samples"];
 
 let sharedGpu = null;
 const panels = [];
@@ -27,7 +27,7 @@ function theGpu() {
 }
 
 // What one press of Run starts: the reader's settings, and the film that is made of them. A loop belongs to one
-// session; when that has ended, the loop touches nothing any more.
+// session and touches nothing after its end.
 export class Session {
   constructor(panel, stage) {
     Object.assign(this, { panel, stage, isEnded: false, wake: () => {} });
@@ -53,29 +53,34 @@ export class Session {
     this.wake();
   }
 
-  // Moves the camera by the first of these moves that the stage's buffers serve. Returns whether there was one.
-  move(...moves) {
-    const camera = moves.map((move) => move(this.settings.camera)).find((moved) => isServed(this.stage, moved));
-    if (camera) {
-      this.settings.camera = camera;
-      this.change();
-    }
-    return camera !== undefined;
+  // Whether the stage's buffers serve the camera after this move.
+  allows(move) {
+    return isServed(this.stage, move(this.settings.camera));
+  }
+
+  move(move) {
+    this.settings.camera = move(this.settings.camera);
+    this.change();
   }
 
   value(slider) {
     const { camera, material } = this.settings;
     if (slider.key === "focus") return focusDistance(camera);
+    if (slider.key === "bounces") return this.settings.depth - 1;
     if (slider.key in MATERIAL_FIELDS) return material[this.stage.sliders.indexOf(slider)] ?? slider.value;
     return camera[slider.key] ?? this.settings[slider.key];
   }
 
   set(slider, value) {
-    const { key } = slider;
+    const { key } = slider, move = (camera) => ({ ...camera, [key]: value });
     if (key in this.settings.camera) {
-      this.move((camera) => ({ ...camera, [key]: value }));
+      if (this.allows(move)) this.move(move);
     } else if (key in MATERIAL_FIELDS) {
       this.settings.material[this.stage.sliders.indexOf(slider)] = value;
+      this.change();
+    } else if (key === "bounces") {
+      // A path has one ray more than bounces.
+      this.settings.depth = value + 1;
       this.change();
     } else {
       this.settings[key] = value;
@@ -87,6 +92,14 @@ export class Session {
 
   async run() {
     this.gpu = await theGpu();
+    try {
+      await this.work();
+    } finally {
+      this.film?.destroy();
+    }
+  }
+
+  async work() {
     while (!this.isEnded) {
       const isSeen = this.panel.isInView && !document.hidden;
       const needsFilm = this.isStale || (this.film.scale > 1 && !this.isMoving);
@@ -98,7 +111,6 @@ export class Session {
         await this.pass(this.film);
       }
     }
-    this.film?.destroy();
   }
 
   async startFilm() {
@@ -182,9 +194,12 @@ class Panel {
     const button = (textContent, onclick) => element("button", { type: "button", textContent, onclick });
     this.adjust = button("Adjust", () => this.open(this.sliders.hidden));
     this.reset = button("Reset", () => {
-      this.session.reset();
-      this.update();
+      for (const panel of this.linked.filter(({ session }) => session)) {
+        panel.session.reset();
+        panel.update();
+      }
     });
+    this.label = root.querySelector(".label[data-label]");
     this.told = element("span", { className: "live-told" });
     this.said = element("span", { className: "live-told" });
     this.said.setAttribute("role", "status");
@@ -221,10 +236,7 @@ class Panel {
     const input = element("input", { type: "range", min, max, step });
     const output = element("output");
     place.append(element("label", {}, element("span", { textContent: label }), input, output));
-    input.oninput = () => {
-      this.session.set(slider, read(input.value));
-      this.update();
-    };
+    input.oninput = () => this.change(slider, read(input.value));
     return () => {
       const value = this.session?.value(slider) ?? slider.value;
       input.value = write(value);
@@ -232,8 +244,32 @@ class Panel {
     };
   }
 
+  // Two views under one seam stay one view.
+  change(slider, value) {
+    const isShared = (panel) => panel === this || (slider.key === "vfov" && panel.stage.camera.vfov === this.stage.camera.vfov);
+    const live = this.linked.filter((panel) => panel.session && isShared(panel));
+    if (slider.key === "vfov" && !live.every(({ session }) => session.allows((camera) => ({ ...camera, vfov: value })))) return;
+    for (const panel of live) {
+      const own = panel.stage.sliders.find(({ key, label }) => key === slider.key && label === slider.label);
+      if (own) panel.session.set(own, value);
+      panel.update();
+    }
+  }
+
+  // The label says what the picture shows: its numbers come from the state.
+  name(valueOf) {
+    if (!this.label) return;
+    const number = (wanted) => {
+      const [key, name = ""] = wanted.split(".");
+      return +valueOf(this.stage.sliders.find((slider) => slider.key === key && slider.label.includes(name))).toFixed(2);
+    };
+    const said = this.label.dataset.label.replace(/{(.*?)}/g, (_, wanted) => number(wanted));
+    this.label.textContent = said.replace(/\b1 (sample|bounce|degree)s/, "1 $1");
+  }
+
   update() {
     this.inputs.forEach((show) => show());
+    this.name((slider) => this.session?.value(slider) ?? slider.value);
     const isLive = this.session !== null;
     this.button.textContent = isLive ? "Stop" : "Run";
     this.button.setAttribute("aria-pressed", isLive);
@@ -252,8 +288,11 @@ class Panel {
     if (this.inputs.length === 0) this.addSliders();
     this.said.textContent = "";
     this.tell("starting");
+    this.unset();
     const session = (this.session = new Session(this, stage));
     this.update();
+    // Under a seam, a still could show another view.
+    for (const panel of this.linked) if (!panel.session) panel.start();
     session.run().catch(async (error) => {
       // If the device was lost, all its work fails, often before the loss is known; that message is the better one.
       await new Promise((passed) => setTimeout(passed, REST_MS));
@@ -261,10 +300,33 @@ class Panel {
     });
   }
 
+  // Without WebGPU, a link shows a picture of its settings that was made with the page.
+  showStill(file, settings) {
+    const [still] = framed(this.root), part = this.root.querySelector(".crop img");
+    this.usual ??= [still, part].filter(Boolean).map((image) => [image, image.src, image.srcset]);
+    for (const [image] of this.usual) Object.assign(image, { srcset: "", src: file });
+    const wanted = new URLSearchParams(settings);
+    this.name((slider) => {
+      const found = [...wanted].find(([key]) => key.split(".")[0] === slider.key && slider.label.includes(key.split(".")[1] ?? ""));
+      return found ? Number(found[1]) : slider.value;
+    });
+    this.back ??= this.root.appendChild(element("button", { type: "button", className: "live-back", textContent: "Back to the usual picture", onclick: () => this.unset() }));
+    this.back.hidden = false;
+  }
+
+  unset() {
+    if (!this.usual) return;
+    for (const [image, src, srcset] of this.usual) Object.assign(image, { src, srcset });
+    this.usual = null;
+    this.back.hidden = true;
+    this.name((slider) => slider.value);
+  }
+
   // Back to the still, with a sentence for the reader if there is something to say.
   stop(reason) {
     this.session?.end();
     this.session = null;
+    this.pointers?.clear();
     this.canvas.hidden = this.hint.hidden = true;
     if (this.part) this.part.hidden = true;
     this.tell("");
@@ -280,14 +342,15 @@ class Panel {
     }
     canvas.getContext("2d").putImageData(image, 0, 0);
     canvas.hidden = false;
-    // The first noisy samples of an unchanged picture fade in over the still.
-    canvas.style.opacity = this.session.isChanged ? 1 : Math.min(1, (done + 1) / Math.min(wanted, 32));
+    // The samples of an unchanged picture fade in over the still, which has less noise.
+    canvas.style.opacity = this.session.isChanged ? 1 : Math.min(1, done / wanted);
     if (this.part) {
       [this.part.width, this.part.height] = [image.width, image.height];
       this.part.getContext("2d").putImageData(image, 0, 0);
       this.part.hidden = false;
     }
     this.hint.hidden = this.hasMoved || !this.stage.has_rays;
+    this.hint.textContent = this.linked.length > 1 ? "drag to turn both, or drag the handle" : "drag to turn";
     this.tell(`${done} of ${wanted} samples, ${seconds.toFixed(1)} s`);
   }
 
@@ -297,21 +360,25 @@ class Panel {
 
   // Starts the picture with these settings, such as `fuzz=1` or `fuzz.left=0&depth=2`, as the text asks for them.
   try(settings) {
-    if (this.session) this.session.reset();
+    if (this.session) this.reset.click();
     else this.start();
     for (const [wanted, value] of new URLSearchParams(settings)) {
       const [key, name = ""] = wanted.split(".");
       const isWanted = (slider) => slider.key === key && slider.label.includes(name);
-      this.stage.sliders.filter(isWanted).forEach((slider) => this.session.set(slider, Number(value)));
+      this.stage.sliders.filter(isWanted).forEach((slider) => this.change(slider, Number(value)));
     }
     this.open(true);
     this.update();
   }
 
+  // By the first of these moves that all views allow.
   move(...moves) {
     this.hasMoved = this.hint.hidden = true;
-    for (const panel of this.linked) {
-      if (panel.session?.move(...moves)) panel.update();
+    const live = this.linked.filter(({ session }) => session);
+    const move = moves.find((move) => live.every(({ session }) => session.allows(move)));
+    for (const panel of move ? live : []) {
+      panel.session.move(move);
+      panel.update();
     }
   }
 
@@ -319,7 +386,7 @@ class Panel {
     const { canvas } = this;
     canvas.tabIndex = 0;
     canvas.setAttribute("aria-description", "Arrow keys turn the scene, plus and minus move the camera.");
-    const pointers = new Map();
+    const pointers = (this.pointers = new Map());
     const spread = () => {
       const [a, b] = [...pointers.values()];
       return b ? Math.hypot(a.x - b.x, a.y - b.y) : 0;
@@ -342,7 +409,7 @@ class Panel {
       if (pointers.size === 1) turn((now.x - before.x) * radiansPerPixel, (now.y - before.y) * radiansPerPixel);
       else if (spread() > 0) approach(spreadBefore / spread());
     };
-    canvas.onpointerup = canvas.onpointercancel = (event) => pointers.delete(event.pointerId);
+    canvas.onpointerup = canvas.onpointercancel = canvas.onlostpointercapture = (event) => pointers.delete(event.pointerId);
     // The wheel scrolls the page until the picture has been clicked.
     canvas.onwheel = (event) => {
       if (document.activeElement !== canvas) return;
@@ -402,9 +469,9 @@ function addWipe(root, live) {
     // A still beside a picture that was turned would show another view.
     const running = live.find((panel) => panel.session);
     if (!isOn || !running) return;
+    const { from, at, up } = running.session.settings.camera;
     for (const panel of live) {
       if (!panel.session) panel.start();
-      const { from, at, up } = running.session.settings.camera;
       if (panel !== running) panel.session.move((camera) => ({ ...camera, from, at, up }));
     }
   });
@@ -432,8 +499,10 @@ function undock() {
 function dock(panel, link) {
   if (docked?.panel === panel) return;
   undock();
-  const { top, bottom, height } = panel.canvas.parentElement.getBoundingClientRect();
+  const frame = panel.canvas.parentElement, { top, bottom, height } = frame.getBoundingClientRect();
   if (Math.min(bottom, innerHeight) - Math.max(top, 0) > height / 2) return;
+  // A figure within a screen is scrolled to: docked, it would hide the text around it.
+  if (top > -innerHeight && bottom < 2 * innerHeight) return frame.scrollIntoView({ block: top < 0 ? "start" : "end" });
   const place = element("div", { className: "panel" });
   place.style.height = `${panel.root.offsetHeight}px`;
   panel.root.replaceWith(place);
@@ -443,7 +512,12 @@ function dock(panel, link) {
 }
 
 async function start(given) {
-  addEventListener("keydown", (event) => event.key === "Escape" && undock());
+  // One Escape closes one thing.
+  addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || event.defaultPrevented || !docked) return;
+    event.preventDefault();
+    undock();
+  });
   use(given);
   for (const root of document.querySelectorAll(".panels")) {
     const made = [...root.querySelectorAll(".panel[data-stage]")]
@@ -454,20 +528,23 @@ async function start(given) {
     // The page answers between two figures.
     await new Promise((passed) => setTimeout(passed));
   }
-  if (!navigator.gpu && panels.length > 0) {
-    const textContent = "In a browser with WebGPU, the pictures of this page can be turned and changed.";
-    panels[0].root.after(element("p", { className: "live-notice", textContent }));
-  }
+  if (!navigator.gpu) say("In a browser with WebGPU, the pictures of this page can be turned and changed.");
   for (const link of document.querySelectorAll("a.try")) {
     const panel = document.querySelector(link.hash).querySelector(`[data-stage="${link.dataset.stage}"]`).live;
     link.addEventListener("click", (event) => {
-      if (!navigator.gpu || !panel) return;
+      if (!panel) return;
       event.preventDefault();
-      panel.try(link.dataset.set);
+      if (navigator.gpu) panel.try(link.dataset.set);
+      else panel.showStill(link.dataset.still, link.dataset.set);
       dock(panel, link);
     });
   }
   document.addEventListener("visibilitychange", () => panels.forEach((panel) => panel.session?.wake()));
+}
+
+// A sentence below the first live picture.
+function say(textContent) {
+  document.querySelector(".panel[data-stage]")?.after(element("p", { className: "live-notice", textContent }));
 }
 
 // Data and fonts that the first screen does not need can be in a file of their own.
@@ -477,7 +554,8 @@ function load() {
     document.head.append(element("style", { textContent: fonts }));
     start(live);
   };
-  document.head.append(element("script", { src: "later.js", onload }));
+  const onerror = () => say("The file later.js is missing beside this page, so its pictures cannot run.");
+  document.head.append(element("script", { src: "later.js", onload, onerror }));
 }
 
 if (typeof document !== "undefined") {

@@ -59,19 +59,21 @@
   };
   const placeholder = "Find in the page";
   const field = make("input", { type: "search", className: "find", placeholder, ariaLabel: placeholder });
-  const found = make("ul", { className: "found" });
-  found.setAttribute("aria-live", "polite");
+  const found = make("ul", { className: "found" }), count = make("p", { className: "count", role: "status" });
+  const MOST = 14;
   const headings = [...document.querySelectorAll("main :is(h2, h3, dt)[id]")];
   let texts;
   // A place in the text has no address of its own, so a press goes there.
   const quote = (element, text, place) => {
-    const item = make("li"), link = make("a", { href: `#${element.closest(".chapter").querySelector("h2").id}` });
-    link.append(make("small", { textContent: `…${text.slice(Math.max(0, place - 24), place + 48)}…` }));
+    const item = make("li"), { id } = element.closest(".chapter").querySelector("h2"), link = make("a", { href: `#${id}` });
+    const chapter = make("span", { className: "in", textContent: links.get(id)?.textContent.trim() ?? "" });
+    link.append(chapter, make("small", { textContent: `…${text.slice(Math.max(0, place - 24), place + 48)}…` }));
     link.addEventListener("click", (event) => {
       event.preventDefault();
-      keep();
       history.pushState(null, "", location.href);
       element.closest("details:not([open])")?.setAttribute("open", "");
+      const { language } = element.closest(".code:not(.shown)")?.dataset ?? {};
+      if (language) element.closest(".tabbed").querySelector(`button[data-language="${language}"]`)?.click();
       element.scrollIntoView({ block: "center" });
       document.querySelectorAll(".found-here").forEach((old) => old.classList.remove("found-here"));
       element.classList.add("found-here");
@@ -81,22 +83,39 @@
   };
   const find = () => {
     const wanted = field.value.trim().toLowerCase();
-    if (wanted.length < 2) return found.replaceChildren();
-    const hits = headings.filter((heading) => words(heading).toLowerCase().includes(wanted)).slice(0, 8).map(entry);
+    found.replaceChildren();
+    count.textContent = "";
+    if (wanted.length < 2) return;
     texts ??= [...document.querySelectorAll(".chapter :is(p, li, td, dd, figcaption, pre)")].filter((element) => !element.querySelector("p, li, td")).map((element) => [element, element.textContent.replace(/\s+/g, " ")]);
-    for (const [element, text] of texts) {
-      const place = text.toLowerCase().indexOf(wanted);
-      if (place >= 0 && hits.length < 14) hits.push(quote(element, text, place));
-    }
-    found.replaceChildren(...(hits.length ? hits : [make("li", { textContent: `Nothing has “${field.value.trim()}”.` })]));
+    // The beginning of a word counts more than its middle.
+    const hit = (text, show) => {
+      const place = text.toLowerCase().search(new RegExp(`(?<!\\p{L})${RegExp.escape?.(wanted) ?? wanted.replace(/[^\p{L}\d]/gu, "\\$&")}`, "u"));
+      return place >= 0 ? [{ rank: 0, show: () => show(place) }] : text.toLowerCase().includes(wanted) ? [{ rank: 1, show: () => show(text.toLowerCase().indexOf(wanted)) }] : [];
+    };
+    const hits = [...headings.flatMap((heading) => hit(words(heading), () => entry(heading))), ...texts.flatMap(([element, text]) => hit(text, (place) => quote(element, text, place)))];
+    hits.sort((a, b) => a.rank - b.rank);
+    found.replaceChildren(...hits.slice(0, MOST).map(({ show }) => show()));
+    count.textContent = hits.length > MOST ? `${MOST} of ${hits.length}; type more to narrow it down` : hits.length ? `${hits.length} found` : `Nothing has “${field.value.trim()}”.`;
   };
   field.addEventListener("input", find);
   field.addEventListener("keydown", (event) => {
     if (event.key === "Enter") found.querySelector("a")?.click();
-    if (event.key === "Escape") field.value = "";
-    if (event.key === "Escape") find();
+    if (event.key !== "Escape" || !field.value) return;
+    event.preventDefault();
+    field.value = "";
+    find();
   });
-  details.querySelector(".home").after(field, found);
+  // Arrows lead through the list and back to the field.
+  const list = make("div", {});
+  list.append(field, count, found);
+  list.addEventListener("keydown", (event) => {
+    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key], stops = [field, ...found.querySelectorAll("a")];
+    const next = step && stops[stops.indexOf(document.activeElement) + step];
+    if (!next) return;
+    event.preventDefault();
+    next.focus();
+  });
+  details.querySelector(".home").after(list);
   const remember = (value) => {
     try {
       if (value) localStorage.setItem("place", value);
@@ -108,12 +127,11 @@
   };
   const left = document.getElementById(remember() ?? "");
   if (left && !location.hash) {
-    found.after(make("a", { className: "back", href: `#${left.id}`, textContent: `Continue at ${words(left)}` }));
+    list.after(make("a", { className: "back", href: `#${left.id}`, textContent: `Continue at ${words(left)}` }));
   }
 
   // The current chapter's sections are in the list.
   const sections = [...document.querySelectorAll(".chapter")];
-  sections.forEach((section) => section.style.setProperty("--length", section.textContent.length));
   const headingsOf = (section) => (section ? [...section.querySelectorAll(":is(h2, h3)[id]")] : []);
   const hasPassed = (element) => element.getBoundingClientRect().top < innerHeight * 0.3;
   const point = (link, isCurrent) => {
@@ -122,7 +140,6 @@
   };
   let current, chapter;
   const mark = () => {
-    // A chapter that is far away has no layout, so its headings are not asked.
     const [first, ...others] = headingsOf(sections.findLast(hasPassed));
     const passed = others.findLast(hasPassed) ?? first;
     if (passed === current && current !== undefined) return;
@@ -141,52 +158,21 @@
     if (passed && current !== undefined) remember(passed.id);
     current = passed ?? null;
   };
-  // Back and reload return to the place. A distance from the top would be wrong, as chapters have no height before they
-  // are near; that from the last heading is right.
-  history.scrollRestoration = "manual";
-  const keep = () => {
-    const at = current ? { id: current.id, from: Math.round(current.getBoundingClientRect().top) } : { from: -scrollY };
-    history.replaceState({ at }, "");
-  };
-  const go = (at) => {
-    const element = at?.id ? document.getElementById(at.id) : null;
-    if (!element) return scrollTo(0, -(at?.from ?? 0));
-    let turns = 8;
-    const step = () => {
-      scrollBy(0, element.getBoundingClientRect().top - at.from);
-      if (--turns > 0) requestAnimationFrame(step);
-    };
-    step();
-  };
   let waiting = 0;
-  const settle = () => {
-    mark();
-    keep();
-  };
   addEventListener("scroll", () => {
     clearTimeout(waiting);
-    waiting = setTimeout(settle, 150);
+    waiting = setTimeout(mark, 150);
   }, { passive: true });
-  // Before a link leads away.
-  addEventListener("click", (event) => {
-    if (!event.target.closest?.("a[href^='#']")) return;
-    clearTimeout(waiting);
-    settle();
-  }, true);
-  const arrive = (state) => {
-    clearTimeout(waiting);
-    if (state?.at) go(state.at);
-    else document.getElementById(location.hash.slice(1))?.scrollIntoView();
-  };
-  addEventListener("popstate", (event) => arrive(event.state));
-  addEventListener("load", () => arrive(history.state));
   mark();
   // [ and ] lead to the chapter before and after.
   addEventListener("keydown", (event) => {
     const step = { "[": -1, "]": 1 }[event.key];
-    if (!step || event.ctrlKey || event.metaKey || event.target.matches("input")) return;
-    const chapters = [...links.keys()];
-    document.getElementById(chapters[Math.max(0, chapters.indexOf(chapter?.id) + step)])?.scrollIntoView();
+    if (!step || event.ctrlKey || event.metaKey || event.target.matches("input, select, textarea")) return;
+    const chapters = [...links.keys()], next = chapters[chapters.indexOf(chapter?.id) + step];
+    if (!next) return;
+    history.pushState(null, "", `#${next}`);
+    document.getElementById(next).scrollIntoView();
+    mark();
   });
 })();
 
@@ -253,17 +239,21 @@
   }
   tip.addEventListener("pointerenter", () => clearTimeout(waiting));
   tip.addEventListener("pointerleave", () => later(hide, 250));
-  addEventListener("keydown", (event) => event.key === "Escape" && hide());
+  addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || event.defaultPrevented || !term) return;
+    event.preventDefault();
+    hide();
+  });
   addEventListener("resize", hide);
 })();
 
-// A mistake beside the right picture: pointing at it shows the other in its place.
-for (const list of document.querySelectorAll(".mistakes")) {
+// A mistake beside the right picture: pointing at it, pressing it or reaching it by keys shows the other in its place.
+for (const list of document.querySelectorAll(".mistakes[data-has-right]")) {
   const [right, ...wrong] = list.querySelectorAll("img");
-  if (!right.alt.includes("As it should be")) continue;
   // A copy is loaded at once, so it is made when it is needed.
-  const copy = () => wrong.forEach((picture) => picture.after(Object.assign(right.cloneNode(), { className: "right", alt: "" })));
-  list.addEventListener("pointerover", copy, { once: true });
-  const textContent = "Point at a wrong picture, or press it, to see the right one in its place.";
-  list.after(Object.assign(document.createElement("p"), { className: "mistakes-hint", textContent }));
+  const copy = () => list.querySelector(".right") || wrong.forEach((picture) => picture.after(Object.assign(right.cloneNode(), { className: `${right.className} right`, alt: "" })));
+  for (const kind of ["pointerover", "focusin"]) list.addEventListener(kind, copy, { once: true });
+  for (const picture of wrong) picture.tabIndex = 0;
+  const textContent = "Point at a wrong picture, press it, or reach it with Tab to see the right one in its place.";
+  list.before(Object.assign(document.createElement("p"), { className: "mistakes-hint", textContent }));
 }

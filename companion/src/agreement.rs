@@ -9,7 +9,7 @@ use weekender::excerpt::Excerpt;
 pub fn check(library: &Library, chapter: &Chapter) -> Result<(), Fault> {
     let mut start = 0;
     for section in chapter.body.split("\n## ") {
-        let blocks = section.split("\n\n").filter_map(|text| text.trim().strip_prefix("{{code\n"));
+        let blocks = section.split("\n\n").filter(|text| text.trim().starts_with("{{code"));
         let open: Vec<Excerpt> = blocks.flat_map(|wanted| open_excerpts(library, wanted)).collect();
         let mut seen: BTreeSet<&str> =
             open.iter().flat_map(|excerpt| excerpt.text.split(is_no_word)).collect();
@@ -36,7 +36,8 @@ fn is_no_word(c: char) -> bool {
 
 /// The excerpts of a block in its first language. Faulty ones are reported where they are shown.
 fn open_excerpts(library: &Library, wanted: &str) -> Vec<Excerpt> {
-    let mut excerpts: Vec<Excerpt> = wanted.lines().filter_map(|line| library.excerpt(line).ok()).collect();
+    let mut excerpts: Vec<Excerpt> =
+        wanted.trim().lines().skip(1).filter_map(|line| library.excerpt(line).ok()).collect();
     let first = excerpts.first().map(|excerpt| excerpt.language().to_owned());
     excerpts.retain(|excerpt| Some(excerpt.language()) == first.as_deref());
     excerpts

@@ -12,10 +12,17 @@ use weekender::system::files::replace_file;
 /// The script that holds the program.
 const FILE: &str = "check.js";
 
+/// Most pixels of a picture that a page's memory of 4 GiB can check.
+const PIXEL_LIMIT: u32 = 1_300_000;
+
 /// The script in the build folder that this program is in; `assets/package/cross.sh web` makes it.
 fn find() -> Option<PathBuf> {
     let program = env::current_exe().ok()?;
     program.ancestors().map(|folder| folder.join("cross").join(FILE)).find(|path| path.is_file())
+}
+
+pub fn is_there() -> bool {
+    find().is_some()
 }
 
 /// Copies the script beside the page.
@@ -25,14 +32,13 @@ pub fn copy(out: &Path) -> Result<()> {
     Ok(replace_file(&out.join(FILE), |writer| writer.write_all(&script))?)
 }
 
-/// What the page's script reads, as JSON that is safe inside a `<script>` element.
+/// Data for the page's script, as JSON that is safe inside a `<script>` element.
 pub fn data() -> String {
     let stages: Vec<_> = Stage::ALL.iter().map(|stage| [stage.id, stage.section, stage.title]).collect();
     let scale = HeatScale::DISPLAYED;
     let colours: Vec<[u8; 3]> = (0..=6).map(|step| colour_at(f64::from(step) / 6.0)).collect();
     let labels: Vec<String> = scale.marks().into_iter().map(|(_, label)| label).collect();
     let scale = json!({ "title": scale.title, "colours": colours, "labels": labels });
-    json!({ "program": find().map(|_| FILE), "stages": stages, "scale": scale })
-        .to_string()
-        .replace("</", "<\\/")
+    let data = json!({ "program": find().map(|_| FILE), "stages": stages, "scale": scale, "pixel_limit": PIXEL_LIMIT });
+    data.to_string().replace("</", "<\\/").replace("<!--", "\\u003c!--")
 }

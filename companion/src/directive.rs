@@ -3,6 +3,7 @@
 use crate::figure::Figure;
 use crate::library::FOLDER;
 use crate::lists;
+use crate::live;
 use crate::picture::Picture;
 use crate::pictures;
 use crate::prose::Place;
@@ -10,13 +11,13 @@ use crate::site::Site;
 use crate::timeline;
 use crate::uses::Uses;
 use crate::words::{numbered, typographic};
-use anyhow::{Context, Error, Result, bail};
+use anyhow::{Context, Error, Result, bail, ensure};
 use maud::{Markup, PreEscaped, html};
 use weekender::excerpt::Excerpt;
 use weekender::stages::Stage;
 
 /// The directives and their arguments. More lines hold a caption, or what to quote.
-const KNOWN: &str = "figure ID, code, fold TITLE, unfold, mistakes STAGE, limits STAGE, samples STAGE, denoised STAGE SAMPLES, table NAME, chart NAME, diagram NAME, timeline STAGE, glossary, references";
+const KNOWN: &str = "figure ID, code, code without LANGUAGES: REASON, fold TITLE, unfold, mistakes STAGE, bounces STAGE, samples STAGE (these three also with crop LEFT TOP WIDTH HEIGHT), denoised STAGE SAMPLES, table NAME, chart NAME, diagram NAME, diagram NAME where WORD < WORD, timeline STAGE, glossary, references";
 
 /// The HTML of a directive, given without its braces.
 pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) -> Result<Markup> {
@@ -30,15 +31,24 @@ pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) ->
     };
     match words.as_slice() {
         ["figure", id] => figure(id, caption()?, None, uses),
-        ["figure", id, "crop", x, y, width, height] => {
-            let crop = [x, y, width, height].map(|number| number.parse().ok());
-            let [Some(x), Some(y), Some(width), Some(height)] = crop else { bail!("a crop is four numbers") };
-            figure(id, caption()?, Some([x, y, width, height]), uses)
+        ["figure", id, "crop", part @ ..] => {
+            figure(id, caption()?, Some(numbers(part)?.map(f64::from)), uses)
         }
-        ["code"] => code(site, place, more),
-        ["mistakes", stage] => pictures::mistakes(stage, more, uses),
-        ["limits", stage] => pictures::variants(stage, more, false, uses),
-        ["samples", stage] => pictures::variants(stage, more, true, uses),
+        ["code"] => code(site, place, more, ""),
+        ["code", "without", ..] => {
+            code(site, place, more, head.split_once("without ").map_or("", |(_, why)| why))
+        }
+        [kind @ ("mistakes" | "bounces" | "samples"), stage, part @ ..] => {
+            let crop = match part {
+                [] => None,
+                ["crop", part @ ..] => Some(numbers(part)?),
+                _ => bail!("after the stage, only a crop can stand"),
+            };
+            match *kind {
+                "mistakes" => pictures::mistakes(stage, more, crop, uses),
+                kind => pictures::variants(stage, more, kind == "samples", crop, uses),
+            }
+        }
         ["fold", ..] => {
             let title = place.inside(site, &words[1..].join(" "), uses)?;
             Ok(PreEscaped(format!("<details class=\"fold\"><summary>{}</summary>", title.0)))
@@ -53,12 +63,19 @@ pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) ->
         }
         ["table", name] => site.measured.table(name),
         ["chart", name] => site.measured.chart(name, uses),
-        ["diagram", name] => diagram(site, name, caption()?, uses),
+        ["diagram", name] => diagram(site, name, caption()?, None, uses),
+        ["diagram", name, "where", a, sign, b] => diagram(site, name, caption()?, Some([a, sign, b]), uses),
         ["timeline", stage] => timeline::figure(stage, uses),
         ["glossary"] => Ok(lists::glossary(site, place, uses)?),
         ["references"] => Ok(lists::references(site, place, uses)?),
         _ => bail!("{{{{{directive}}}}} is not a directive; use one of {KNOWN}"),
     }
+}
+
+/// Left, top, width and height in the stage's pixels.
+fn numbers(words: &[&str]) -> Result<[u32; 4]> {
+    let numbers: Result<Vec<u32>, _> = words.iter().map(|word| word.parse()).collect();
+    numbers.ok().and_then(|numbers| numbers.try_into().ok()).context("a crop is four whole numbers")
 }
 
 /// Pictures narrower than this are enlarged with every pixel a square. (A reduced picture must not be shown so: its edges
@@ -73,13 +90,15 @@ pub fn panel(
     crop: Option<[f64; 4]>,
     small: Option<&Picture>,
     uses: &mut Uses,
-) -> Markup {
+) -> Result<Markup> {
+    // A live panel fills its label again whenever its state changes.
+    let said = label.map(|label| live::filled(stage, label)).transpose()?;
     // The window opens the page at a stage.
     let id = format!("stage-{}", stage.id);
     let id = Some(id).filter(|id| small.is_none() && uses.anchors.insert(id.clone()));
     let (file, [width, height]) =
         (format!("figures/{}.png", stage.id), [stage.setup.width, stage.setup.height]);
-    html! {
+    Ok(html! {
         div .panel id=[id] data-stage=(stage.id) {
             div .live-frame { img .pixels[width < FEW_PIXELS] src=(file) width=(width) height=(height) alt=(stage.alt)
                 loading=[small.is_none().then_some("lazy")] fetchpriority=[small.map(|_| "high")]
@@ -92,9 +111,11 @@ pub fn panel(
                         style=(format!("width: {wide:.3}%; left: {left:.3}%; top: {top:.3}%"));
                 }
             }
-            @if let Some(label) = label { p .label { (typographic(label)) } }
+            @if let Some(said) = said {
+                p .label data-label=[label.filter(|label| label.contains('{'))] { (typographic(&said)) }
+            }
         }
-    }
+    })
 }
 
 /// `crop` is a part to show enlarged: left, top, width and height in the stage's pixels.
@@ -106,10 +127,15 @@ fn figure(id: &str, caption: Option<Markup>, crop: Option<[f64; 4]>, uses: &mut 
         bail!("the figure {id:?} is on the page already; link it as [text](#figure-{id})");
     }
     let is_wide = figure.panels.len() > 1;
+    let panels: Result<Vec<Markup>> = figure
+        .panels
+        .iter()
+        .map(|shown| panel(shown.stage(), is_wide.then_some(shown.label.as_str()), crop, None, uses))
+        .collect();
     Ok(html! {
         figure .figure .wide[is_wide] id={ "figure-" (id) } {
             div .panels .{ "of-" (figure.panels.len()) } {
-                @for shown in &figure.panels { (panel(shown.stage(), is_wide.then_some(shown.label.as_str()), crop, None, uses)) }
+                @for panel in panels? { (panel) }
             }
             (numbered(&html! {
                 strong { (typographic(&figure.title)) "." } " "
@@ -122,8 +148,13 @@ fn figure(id: &str, caption: Option<Markup>, crop: Option<[f64; 4]>, uses: &mut 
 /// Order of the switch between languages.
 const LANGUAGES: [&str; 3] = ["c", "wgsl", "rs"];
 
-/// Excerpts, one a line, with a switch between their languages. The first is open.
-fn code(site: &Site, place: &Place<'_>, wanted: &str) -> Result<Markup> {
+fn name_of(language: &str) -> String {
+    if language == "rs" { "Rust".to_owned() } else { language.to_uppercase() }
+}
+
+/// Excerpts, one a line, with a switch between their languages. The first is open. In the book's chapters, `why` gives the
+/// reason for each language that is missing, as in `C, WGSL: the reason`.
+fn code(site: &Site, place: &Place<'_>, wanted: &str, why: &str) -> Result<Markup> {
     let excerpts: Result<Vec<Excerpt>, String> =
         wanted.lines().map(|line| site.library.excerpt(line)).collect();
     let excerpts = excerpts.map_err(Error::msg)?;
@@ -131,17 +162,28 @@ fn code(site: &Site, place: &Place<'_>, wanted: &str) -> Result<Markup> {
     let open = languages.first().copied().unwrap_or_default();
     languages.sort_by_key(|language| LANGUAGES.iter().position(|known| known == language));
     languages.dedup();
+    let (lacking, reason) = why.split_once(": ").unwrap_or((why, ""));
+    let lacking: Vec<&str> = lacking.split(", ").filter(|name| !name.is_empty()).collect();
+    for language in LANGUAGES.iter().filter(|_| place.is_of_book()) {
+        let name = name_of(language);
+        let (is_there, is_excused) = (languages.contains(language), lacking.contains(&name.as_str()));
+        if is_there == is_excused {
+            let what = if is_there { "is there" } else { "is missing" };
+            bail!("{name} {what}; list exactly what is missing: code without C, WGSL: REASON");
+        }
+    }
     Ok(html! {
         div .tabbed {
             @if languages.len() > 1 {
                 div .tabs role="group" aria-label="Language" {
                     @for language in &languages {
                         button type="button" data-language=(language) aria-pressed=(*language == open) {
-                            @match *language { "rs" => "Rust", other => (other.to_uppercase()) }
+                            (name_of(language))
                         }
                     }
                 }
             }
+            @if !reason.is_empty() { p .without { "Not in " (lacking.join(" or ")) ": " (typographic(reason)) "." } }
             @for excerpt in &excerpts {
                 @let language = excerpt.language();
                 @let Excerpt { file, first, last, text } = excerpt;
@@ -159,12 +201,39 @@ fn code(site: &Site, place: &Place<'_>, wanted: &str) -> Result<Markup> {
     })
 }
 
-/// Diagrams are SVG files that take their colours from the text around them. Without a caption, they have their title.
-fn diagram(site: &Site, name: &str, caption: Option<Markup>, uses: &mut Uses) -> Result<Markup> {
+/// Diagrams are SVG files that take their colours from the text around them. Without a caption, they have their title. What
+/// the caption of a random one claims is given as two words of its reading, each with a number after it.
+fn diagram(
+    site: &Site,
+    name: &str,
+    caption: Option<Markup>,
+    claim: Option<[&str; 3]>,
+    uses: &mut Uses,
+) -> Result<Markup> {
     let path = format!("{FOLDER}/diagrams/{name}.svg");
     // The line to name is the directive's.
     let text = site.library.read(&path).map_err(|fault| Error::msg(fault.to_string()))?;
     let start = text.find("<svg").with_context(|| format!("{path} has no <svg> element"))?;
+    ensure!(
+        claim.is_some() || !text.contains("data-random"),
+        "{name} draws random numbers: add what its reading shows, as in `where Sobol < random`"
+    );
+    if let Some([a, sign, b]) = claim {
+        let reading = text
+            .split_once("<desc")
+            .and_then(|(_, rest)| rest.split_once("</desc>"))
+            .map_or("", |(reading, _)| reading);
+        let [left, right] = [number_after(reading, a)?, number_after(reading, b)?];
+        let holds = match sign {
+            "<" => left < right,
+            // Within 2 % of a whole.
+            _ => (left - right).abs() <= 2.0,
+        };
+        ensure!(
+            holds,
+            "the reading of {name} contradicts its caption: {a} {left} {sign} {b} {right}; open it in another state"
+        );
+    }
     let title = text.split_once("<title").and_then(|(_, rest)| rest.split_once('>'));
     let title = title.and_then(|(_, rest)| rest.split_once("</title>")).map(|(title, _)| title.trim());
     let caption = caption.or(title.map(|title| PreEscaped(title.to_owned())));
@@ -174,4 +243,15 @@ fn diagram(site: &Site, name: &str, caption: Option<Markup>, uses: &mut Uses) ->
             (numbered(&caption.unwrap_or_default(), uses))
         }
     })
+}
+
+/// The number after the last occurrence of a word.
+fn number_after(reading: &str, word: &str) -> Result<f64> {
+    let (_, rest) = reading.rsplit_once(word).with_context(|| format!("the reading has no {word:?}"))?;
+    let number = rest.trim_start_matches(|c: char| !c.is_ascii_digit());
+    let end = number.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(number.len());
+    number[..end]
+        .trim_end_matches('.')
+        .parse()
+        .with_context(|| format!("no number is after {word:?} in the reading"))
 }

@@ -10,6 +10,7 @@ mod check;
 mod directive;
 mod figure;
 mod highlight;
+mod letters;
 mod library;
 mod lists;
 mod live;
@@ -58,7 +59,7 @@ fn run() -> Result<ExitCode, Failure> {
 /// # Errors
 /// [`Failure::Input`] if nothing was written; [`Failure::BrokeOff`] or [`Failure::Run`] otherwise.
 fn write(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failure> {
-    let page = Site::read(&Library::of_checkout()).and_then(|site| page::render(&site));
+    let page = Site::read(&Library::of_checkout()).and_then(|site| page::render(&site, options.quick));
     let page = page.map_err(Failure::Input)?;
     let (out, index) = (&options.out, options.index());
     page::check_replaceable(&index).map_err(Failure::Input)?;
@@ -72,6 +73,9 @@ fn write(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     for picture in page.pictures.iter().take_while(|_| !interrupt.is_set()) {
         picture.render(out).map_err(Failure::Run)?;
         missing -= 1;
+    }
+    if missing == 0 {
+        picture::remove_others(out, &page.pictures).map_err(Failure::Run)?;
     }
     let mut outcome = work.render()?;
     outcome.missing += missing;

@@ -34,6 +34,11 @@ struct Kept {
     command: String,
     /// The day of the measurement.
     date: String,
+    /// The machine as its owner describes it, and the compiler of the C program.
+    system: String,
+    compiler: Option<String>,
+    /// Warm-ups and runs of each row.
+    method: String,
     #[serde(skip)]
     json: Value,
 }
@@ -132,7 +137,7 @@ fn speed_tables(kept: &Kept) -> Result<Markup> {
         let [width, height, depth, spheres] =
             ["width", "height", "max_depth", "spheres"].map(|key| &scene[key]);
         let caption = html! {
-            strong { (name) } ", " (width) " × " (height) ", at most " (depth) " rays per path, " (spheres) " spheres. "
+            strong { (name) } ", " (width) " × " (height) ", at most " (depth.as_u64().unwrap_or(1) - 1) " bounces, " (spheres) " spheres. "
             "Median and range of the runs. " (origin(kept))
         };
         table(&format!("Speed of {name}"), &caption, &columns, rows.iter().map(row))
@@ -259,7 +264,8 @@ fn origin(kept: &Kept) -> Markup {
     html! {
         "Measured on " (kept.date) ", " (text(machine))
         @if machine.is_object() { (text(&machine["processor"])) ", " (machine["cores"]) " cores" }
-        ", by " (code_words(&kept.command)) "."
+        ", " (kept.system) ", by " (code_words(&kept.command)) ". " (kept.method) "."
+        @if let Some(compiler) = &kept.compiler { " The C program: " (code_words(compiler)) "." }
     }
 }
 
@@ -314,7 +320,8 @@ mod tests {
 
     fn kept(json: &Value) -> Kept {
         let (file, command) = ("a.json".to_owned(), "make it".to_owned());
-        Kept { file, command, date: "1 May".to_owned(), json: json.clone() }
+        let (system, method) = ("Debian".to_owned(), "One run".to_owned());
+        Kept { file, command, date: "1 May".to_owned(), system, compiler: None, method, json: json.clone() }
     }
 
     /// The text of each row's cells.

@@ -4,6 +4,7 @@ use crate::agreement;
 use crate::chapter::Chapter;
 use crate::check;
 use crate::directive;
+use crate::letters;
 use crate::library::Fault;
 use crate::live;
 use crate::picture::Picture;
@@ -19,6 +20,16 @@ use weekender::system::files::check_writable;
 
 /// Styles and scripts.
 const ASSETS: &str = "companion/assets";
+
+/// The script of the diagrams, in its order.
+const DIAGRAMS: [&str; 6] = [
+    "diagrams/kit.js",
+    "diagrams/chapters-1-to-7.js",
+    "diagrams/chapters-8-to-10.js",
+    "diagrams/chapters-11-to-14.js",
+    "diagrams/chapters-a-to-g.js",
+    "diagrams/run.js",
+];
 
 /// Marks a page as the program's own.
 const GENERATOR: &str = "<meta name=\"generator\" content=\"Weekender\">";
@@ -37,12 +48,12 @@ pub struct Page {
 }
 
 /// Renders everything. Fails with the first [`Fault`] of the texts, or if a stage has no data for a browser.
-pub fn render(site: &Site) -> Result<Page> {
+pub fn render(site: &Site, is_quick: bool) -> Result<Page> {
+    letters::check(&site.chapters)?;
     let mut uses = Uses::default();
-    let content = html! {
-        (cover(&mut uses))
-        @for chapter in &site.chapters { (section(site, chapter, &mut uses)?) }
-    };
+    let chapters = html! { @for chapter in &site.chapters { (section(site, chapter, &mut uses)?) } };
+    let count = |part: &str| chapters.0.matches(part).count();
+    let content = html! { (cover(count(" data-stage=\"") - count("class=\"try\""), count("class=\"drawn\""), is_quick, &mut uses)?) (chapters) };
     site.check(&uses, &content.0)?;
     let live = live::live_data(Stage::ALL)?;
     let fonts = serde_json::json!(site.library.read(&format!("{ASSETS}/more-fonts.css"))?);
@@ -103,7 +114,7 @@ fn document(site: &Site, content: &Markup) -> Result<Markup, Fault> {
                     (colophon())
                 }
                 script type="module" { (assets(&["page.js"])?) }
-                script type="module" { (assets(&["diagrams.js"])?) }
+                script type="module" { (assets(&DIAGRAMS)?) }
                 script type="module" { (assets(&["scene.js", "film.js", "live.js"])?) }
                 script type="application/json" id="check-data" { (PreEscaped(check::data())) }
                 script type="module" { (assets(&["check.js"])?) }
@@ -112,23 +123,29 @@ fn document(site: &Site, content: &Markup) -> Result<Markup, Fault> {
     })
 }
 
-fn cover(uses: &mut Uses) -> Markup {
+/// `live` pictures can run, and `drawn` diagrams be dragged.
+fn cover(live: usize, drawn: usize, is_quick: bool, uses: &mut Uses) -> Result<Markup> {
     let stage = cover_stage();
-    html! {
+    let panel = directive::panel(stage, None, None, Some(&Picture::small(stage)), uses)?;
+    Ok(html! {
         header .cover {
             p .kicker { "Weekender, the companion" }
             h1 { cite { "Ray Tracing in One Weekend" } ", many rays at a time" }
             p .lead {
-                "The book, chapter by chapter: every picture rendered by the program, every excerpt its real code, and \
-                 every figure live in your browser. Then: lanes, threads and GPUs, measured."
+                "The book, chapter by chapter: every picture rendered by the program, every excerpt its real code. "
+                (drawn) " drawings move, and in a browser with WebGPU " (live + 1) " pictures run. Then: lanes, threads and GPUs, measured."
             }
-            div .check-box {}
+            @if check::is_there() { div .check-box {} }
             figure .figure id="figure-cover" {
-                div .panels { (directive::panel(stage, None, None, Some(&Picture::small(stage)), uses)) }
-                figcaption { "The book’s last picture. Press " em { "Run" } " and drag it: your own device then traces it, with the program’s shaders." }
+                div .panels { (panel) }
+                figcaption {
+                    "The book’s last picture."
+                    span .runs { " Press " em { "Run" } " and drag it: your own device then traces it, with the program’s shaders." }
+                    @if is_quick { " This is a quick copy of the page: its pictures are small and a little noisy." }
+                }
             }
         }
-    }
+    })
 }
 
 fn colophon() -> Markup {

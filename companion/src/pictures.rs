@@ -14,17 +14,18 @@ use weekender::stages::Stage;
 const SMALL: (u32, u64) = (180, 128);
 
 /// A row of pictures: the stage as it should be, and with each of these mistakes, whose ids are words.
-pub fn mistakes(stage: &str, ids: &str, uses: &mut Uses) -> Result<Markup> {
+/// `crop` is the part that shows them, at the size of the stage.
+pub fn mistakes(stage: &str, ids: &str, crop: Option<[u32; 4]>, uses: &mut Uses) -> Result<Markup> {
     let stage = Stage::find(stage)?;
     let recipe = stage.recipe();
     let find = |id| {
         let is_it = |mistake: &&Mistake| mistake.id == id && (mistake.applies)(&recipe);
         MISTAKES.iter().find(is_it).with_context(|| format!("{} can have no mistake {id:?}", stage.id))
     };
-    let plain = |name, mistake| Picture::new(stage, name, SMALL, Tracer::Plain(mistake));
+    let plain = |name, mistake| Picture::new(stage, name, SMALL, Tracer::Plain(mistake)).cropped(crop);
     let wrong: Result<Vec<&'static Mistake>> = ids.split_whitespace().map(find).collect();
     Ok(html! {
-        ul .mistakes {
+        ul .mistakes data-has-right {
             (entry(plain("right", None), "as it should be", "", uses))
             @for mistake in wrong? {
                 (entry(plain(mistake.id, Some(mistake)), mistake.title, mistake.remedy, uses))
@@ -33,19 +34,26 @@ pub fn mistakes(stage: &str, ids: &str, uses: &mut Uses) -> Result<Markup> {
     })
 }
 
-/// A row of pictures of a stage with these limits on the rays of a path or, if `is_of_samples`, with so many samples.
-pub fn variants(stage: &str, numbers: &str, is_of_samples: bool, uses: &mut Uses) -> Result<Markup> {
+/// A row of pictures of a stage with these limits on bounces or, if `is_of_samples`, numbers of samples.
+pub fn variants(
+    stage: &str,
+    numbers: &str,
+    is_of_samples: bool,
+    crop: Option<[u32; 4]>,
+    uses: &mut Uses,
+) -> Result<Markup> {
     let stage = Stage::find(stage)?;
     let numbers: Result<Vec<u32>, _> = numbers.split_whitespace().map(str::parse).collect();
     let mut shown = |number: u32| {
         let mut picture =
-            Picture::new(stage, if is_of_samples { "samples" } else { "limit" }, SMALL, Tracer::Fast);
+            Picture::new(stage, if is_of_samples { "samples" } else { "limit" }, SMALL, Tracer::Fast)
+                .cropped(crop);
         let title = if is_of_samples {
             picture.recipe.samples_per_pixel = number.into();
             counted(number.into(), "sample") + " per pixel"
         } else {
-            picture.recipe.settings.max_depth = number;
-            format!("at most {} per path", counted(number.into(), "ray"))
+            picture.recipe.settings.max_depth = number + 1;
+            format!("at most {}", counted(number.into(), "bounce"))
         };
         entry(picture, &title, "", uses)
     };
@@ -54,7 +62,8 @@ pub fn variants(stage: &str, numbers: &str, is_of_samples: bool, uses: &mut Uses
 
 fn entry(picture: Picture, title: &str, remedy: &str, uses: &mut Uses) -> Markup {
     let title = typographic(title);
-    let title = title[..1].to_uppercase() + &title[1..];
+    let mut letters = title.chars();
+    let title: String = letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect();
     let shown = html! {
         li {
             (picture.img(&title))

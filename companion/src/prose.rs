@@ -3,6 +3,8 @@
 use crate::chapter::Chapter;
 use crate::figure::Figure;
 use crate::library::{Fault, line_of};
+use crate::live;
+use crate::picture::Picture;
 use crate::site::Site;
 use crate::uses::Uses;
 use crate::words::{code_words, typographic};
@@ -16,7 +18,7 @@ use std::fmt::Write as _;
 use std::iter::Peekable;
 use std::ops::Range;
 use std::vec::IntoIter;
-use weekender::stages;
+use weekender::stages::{self, Stage};
 
 /// Makes the HTML of a directive, given without its braces. A directive may have Markdown in it.
 pub type Directive = fn(&Site, &Place<'_>, &str, &mut Uses) -> Result<Markup>;
@@ -32,6 +34,11 @@ pub struct Place<'a> {
 }
 
 impl Place<'_> {
+    /// Whether the text belongs to one of the book's chapters with code.
+    pub fn is_of_book(&self) -> bool {
+        self.chapter.is_some_and(|chapter| (2..=14).contains(&chapter.number))
+    }
+
     /// A text inside a directive, without its paragraph.
     pub fn inside(&self, site: &Site, text: &str, uses: &mut Uses) -> Result<Markup, Fault> {
         let html = convert(site, &Place { text: text.trim(), ..*self }, uses)?.into_string();
@@ -156,9 +163,12 @@ struct Converter<'a> {
     uses: &'a mut Uses,
     /// Line in the file.
     line: usize,
-    /// What closes each open link.
+    /// The ends of all open links.
     closing: Vec<Markup>,
 }
+
+/// The heading below which the page offers to check the reader's picture.
+const MISTAKES: &str = "What a mistake looks like";
 
 /// Prefix of a citation's target, such as `[@key]` or `[@key; @other]`.
 const CITATION: &str = "cite:";
@@ -268,7 +278,8 @@ impl Converter<'_> {
         let link = html! { a .anchor href={ "#" (anchor) } aria-label="Link to this section" { "#" } };
         // h1 is the page's title, h2 a chapter's.
         ensure!(level == 2, "headings in a chapter have two #; the title is in the facts");
-        Ok(html! { h3 id=(anchor) { (title) (link) } })
+        let is_of_mistakes = plain_text == MISTAKES;
+        Ok(html! { h3 id=(anchor) data-mistakes[is_of_mistakes] { (title) (link) } })
     }
 
     /// The heading of a section of the book, with a link to it.
@@ -363,7 +374,17 @@ impl Converter<'_> {
                 let figure = figure.with_context(|| format!("no figure shows the stage {id:?}"))?;
                 let anchor = format!("figure-{}", figure.id);
                 self.note_target(&anchor);
-                unclosed(&html! { a .try href={ "#" (anchor) } data-stage=(id) data-set=(settings) {} })
+                let stage = Stage::find(id)?;
+                // For browsers without WebGPU.
+                let mut still = Picture::still(stage);
+                live::set(&mut still.recipe, settings)?;
+                let file = still.file();
+                if self.uses.pictures.iter().all(|picture| picture.file() != file) {
+                    self.uses.pictures.push(still);
+                }
+                unclosed(
+                    &html! { a .try href={ "#" (anchor) } data-stage=(id) data-set=(settings) data-still=(file) {} },
+                )
             }
             "source" => {
                 ensure!(site.library.has(rest), "there is no file {rest:?} in the sources");

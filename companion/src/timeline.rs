@@ -14,7 +14,7 @@ use weekender::stages::Stage;
 const LANES: u32 = 8;
 
 /// Samples per lane.
-const SAMPLES: u64 = 12;
+const SAMPLES: u64 = 48;
 
 /// Height of a lane and width of the figure, in drawing units.
 const SIZE: [f64; 2] = [10.0, 720.0];
@@ -22,7 +22,7 @@ const SIZE: [f64; 2] = [10.0, 720.0];
 /// Gap between lanes.
 const GAP: f64 = 1.5;
 
-/// What a lane does in a step.
+/// The work of a lane in a step.
 #[derive(Clone, Copy, PartialEq)]
 enum Activity {
     Camera,
@@ -143,7 +143,7 @@ mod tests {
             rest.trim_start_matches(": ").split(' ').next().unwrap().parse().unwrap()
         };
         let (plain, refilled) = (steps("the longest path"), steps("its next path at once"));
-        assert!(refilled >= 12.0 && refilled < 0.9 * plain, "{refilled} {plain}");
+        assert!(refilled >= 48.0 && refilled < 0.9 * plain, "{refilled} {plain}");
         // Every lane starts with a camera ray.
         assert_eq!(html.matches("M0.0 ").count(), 16);
     }

@@ -132,7 +132,7 @@ seen.slider = await changes(() => picture(glass), async () => {
 });
 await slider(glass, "Defocus angle").fill("2");
 await slider(glass, "Fuzz (right)").fill("0.25");
-await slider(glass, "Rays per path").fill("7");
+await slider(glass, "Bounces").fill("6");
 await keepFilm(glass, "changed");
 await shot("changed");
 

@@ -26,3 +26,6 @@ fi
 for name in speed mappings refill; do mv "$report/$name.json" "$out"; done
 mv "$report"/report.json $out/error.json
 sed -i "s/^date = .*/date = \"$(date +%F)\"/" $texts/measured.toml
+# A new run has its own system and compiler.
+sed -i -e "s/^system = .*/system = \"$(uname -srm)\"/" \
+    -e "s/^compiler = .*/compiler = \"$(cc --version | head -n 1), -std=c89 -O2\"/" $texts/measured.toml

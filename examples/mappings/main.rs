@@ -126,7 +126,7 @@ fn compare(
     });
     let [width, height] = SIZE;
     let about = format!(
-        "The three spheres, {width} × {height}, {} samples per pixel, at most 24 rays per path.",
+        "The three spheres, {width} × {height}, {} samples per pixel, at most 23 bounces.",
         options.samples
     );
     Ok(Comparison { about, machine, rows: rows.collect() })

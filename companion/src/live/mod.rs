@@ -1,10 +1,13 @@
-//! What a browser needs to run a stage: the shaders, their buffers, and the numbers that a reader can change.
+//! Data with which a browser runs a stage: the shaders, their buffers, and the numbers that a reader can change.
 //!
 //! A page has `assets/live.css` in `<style>`, `scene.js`, `film.js` and `live.js` from there in `<script
 //! type="module">`, and [`live_data`] in `<script type="application/json" id="live-data">` or in `later.js` beside it.
 //! The script adds a switch to each `.panel[data-stage]`. A page opened from disk may use WebGPU, too.
 
 mod sliders;
+mod state;
+
+pub use state::{filled, set};
 
 use anyhow::{Context, Result};
 use base64::Engine;

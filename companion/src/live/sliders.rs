@@ -8,14 +8,14 @@ use weekender::stages::Shading;
 /// A slider. The range of `samples` is that of its base-2 logarithm.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Slider {
-    /// What it changes: a number of the camera, `depth`, `samples`, or the material number `fuzz` or `index`.
-    key: &'static str,
-    label: String,
+    /// What it changes: a number of the camera, `bounces`, `samples`, or the material number `fuzz` or `index`.
+    pub(super) key: &'static str,
+    pub(super) label: String,
     unit: &'static str,
     min: f64,
     max: f64,
     step: f64,
-    value: f64,
+    pub(super) value: f64,
     /// The shading records that get the value.
     rows: Vec<usize>,
     /// The shading records that get its inverse: air bubbles in glass.
@@ -57,8 +57,8 @@ pub(super) fn sliders(job: &RenderJob, samples: u64, scene_index: &[u32]) -> Vec
     if shading == Shading::Path && !job.scene().spheres.is_empty() {
         sliders.extend(fuzz(job, scene_index));
         sliders.extend(index(job, scene_index));
-        let depth = f64::from(job.settings().max_depth);
-        sliders.push(Slider::new("depth", "Rays per path", [1.0, 50.0, 1.0], depth));
+        let bounces = f64::from(job.settings().max_depth) - 1.0;
+        sliders.push(Slider::new("bounces", "Bounces", [0.0, 49.0, 1.0], bounces));
     }
     if samples > 1 {
         sliders.push(Slider::new("samples", "Samples per pixel", [0.0, 12.0, 1.0], samples as f64));

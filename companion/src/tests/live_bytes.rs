@@ -159,7 +159,7 @@ fn case(stage: &Stage, sliders: &[Value], draws: &mut Draws, count: usize) -> Ca
                 material.insert(index.to_string(), value);
                 with_slider(&mut scene, slider, value);
             }
-            "depth" => depth = value as u32,
+            "bounces" => depth = value as u32 + 1,
             "samples" => {}
             // A wide lens is not served everywhere, and most cases should be.
             "defocus" => camera["defocus"] = json!(value * 0.2),

@@ -172,11 +172,11 @@ fn page_has_stages_and_no_dead_links() {
     let [languages, normals] = site.chapters.as_mut_slice() else { panic!("two chapters") };
     languages.body = "{{figure red-sphere}}\n\n{{glossary}}\n\n{{references}}".to_owned();
     normals.body = "{{figure sky}}\n\n[x](#normals)".to_owned();
-    let built = page::render(&site).unwrap();
+    let built = page::render(&site, true).unwrap();
     assert!(built.html.contains("id=\"stage-sky\""));
 
     site.chapters[1].body = "[x](#gone)".to_owned();
-    let fault = page::render(&site).unwrap_err().to_string();
+    let fault = page::render(&site, true).unwrap_err().to_string();
     assert!(fault.ends_with("nothing on the page has the anchor #gone"), "{fault}");
 }
 
@@ -226,7 +226,7 @@ fn errors_of_the_whole_page_name_file_and_line() {
         site.terms.clear();
         site.chapters[1].body = "[x](page:normals#no-such)".to_owned();
         change(&mut site);
-        page::render(&site).unwrap_err().to_string()
+        page::render(&site, true).unwrap_err().to_string()
     };
     let dead = fault(&|_| ());
     assert!(dead.starts_with("docs/companion/06-normals.md:"), "{dead}");
