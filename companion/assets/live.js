@@ -5,6 +5,8 @@ const MOST_SCALE = 8;
 const FIRST_SLIDERS = ["fuzz", "index", "defocus", "bounces", "vfov", "samples"];
 
 let sharedGpu = null;
+// Whether there is a device: a browser may have WebGPU without one.
+let canRun = false;
 const panels = [];
 
 // The device, opened on first use. If it fails, every live picture becomes a still again.
@@ -211,7 +213,7 @@ class Panel {
     root.append(element("div", { className: "live-controls" }, this.bar, this.sliders));
     this.open(false);
     this.update();
-    this.button.hidden = this.bar.hidden = !navigator.gpu;
+    this.button.hidden = this.bar.hidden = !canRun;
     if (stage.has_rays) this.listen();
     const watcher = new IntersectionObserver((entries) => {
       this.isInView = entries.at(-1).isIntersecting;
@@ -519,6 +521,8 @@ async function start(given) {
     undock();
   });
   use(given);
+  canRun = Boolean(await navigator.gpu?.requestAdapter().catch(() => null));
+  document.documentElement.classList.toggle("gpu", canRun);
   for (const root of document.querySelectorAll(".panels")) {
     const made = [...root.querySelectorAll(".panel[data-stage]")]
       .filter((panel) => data.stages[panel.dataset.stage])
@@ -528,13 +532,13 @@ async function start(given) {
     // The page answers between two figures.
     await new Promise((passed) => setTimeout(passed));
   }
-  if (!navigator.gpu) say("In a browser with WebGPU, the pictures of this page can be turned and changed.");
+  if (!canRun) say("In a browser with WebGPU, the pictures of this page can be turned and changed.");
   for (const link of document.querySelectorAll("a.try")) {
     const panel = document.querySelector(link.hash).querySelector(`[data-stage="${link.dataset.stage}"]`).live;
     link.addEventListener("click", (event) => {
       if (!panel) return;
       event.preventDefault();
-      if (navigator.gpu) panel.try(link.dataset.set);
+      if (canRun) panel.try(link.dataset.set);
       else panel.showStill(link.dataset.still, link.dataset.set);
       dock(panel, link);
     });

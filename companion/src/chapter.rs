@@ -32,9 +32,6 @@ pub struct Facts {
     /// Symbols of formulas and names in code, with the number of their colour.
     #[serde(default)]
     pub colours: BTreeMap<String, u8>,
-    /// The letters of formulas with their meanings. Those of the first chapter hold in all.
-    #[serde(default)]
-    pub letters: BTreeMap<String, String>,
     /// Names in the text that are not in the code beside it.
     #[serde(default)]
     pub elsewhere: Vec<String>,

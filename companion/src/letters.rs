@@ -1,8 +1,11 @@
-//! The letters of formulas: each has its meaning in a chapter's facts, and no other in the next chapter.
+//! The letters of formulas: each has one meaning in a chapter, and no other in the next.
 
 use crate::chapter::Chapter;
 use crate::library::{Fault, line_of};
 use std::collections::BTreeMap;
+
+/// Lists the letters.
+pub const FILE: &str = "docs/companion/letters.toml";
 
 /// Commands with text inside, and letters of the Greek alphabet. π is always the number.
 const TEXTS: [&str; 5] = ["text", "mathrm", "operatorname", "begin", "end"];
@@ -19,29 +22,36 @@ const GREEK: [(&str, char); 10] = [
     ("Omega", 'Ω'),
 ];
 
-/// Finds a letter without a meaning, and one whose meaning differs from that in the chapter before or in the first one.
-pub fn check(chapters: &[Chapter]) -> Result<(), Fault> {
+/// The meanings of letters by chapter; those of `common` hold in all.
+pub type Letters = BTreeMap<String, BTreeMap<String, String>>;
+
+/// Finds a letter without a meaning, and one with another meaning than in the chapter before or in `common`.
+pub fn check(letters: &Letters, chapters: &[Chapter]) -> Result<(), Fault> {
     let none = BTreeMap::new();
-    let common = chapters.first().map_or(&none, |chapter| &chapter.facts.letters);
-    let mut before = common;
+    let of = |chapter: &str| letters.get(chapter).unwrap_or(&none);
+    let (common, mut before) = (of("common"), &none);
     for chapter in chapters {
-        let own = &chapter.facts.letters;
-        for (letter, meaning) in own {
-            let others = [common, before].into_iter().filter_map(|known| known.get(letter));
-            if let Some(other) = others.into_iter().find(|other| *other != meaning) {
-                let message = format!(
-                    "{letter} is {meaning:?} here and {other:?} in a chapter before; choose another letter"
-                );
-                return Err(Fault::new(&chapter.file, 1, message));
-            }
+        let own = of(&chapter.id);
+        let clash = own.iter().find_map(|(letter, meaning)| {
+            let known = [common, before].into_iter().filter_map(|known| known.get(letter));
+            known.into_iter().find(|other| *other != meaning).map(|other| (letter, meaning, other))
+        });
+        if let Some((letter, meaning, other)) = clash {
+            let message = format!(
+                "{letter} is {meaning:?} in the chapter {} and {other:?} before it; choose another letter",
+                chapter.id
+            );
+            return Err(Fault::new(FILE, 0, message));
         }
         for (place, formula) in formulas(&chapter.body) {
-            if let Some(letter) =
-                letters(formula).find(|letter| ![own, common].iter().any(|known| known.contains_key(letter)))
-            {
+            let is_unknown = |letter: &String| !own.contains_key(letter) && !common.contains_key(letter);
+            if let Some(letter) = self::letters(formula).find(is_unknown) {
                 let line = chapter.lines_before + line_of(&chapter.body, place);
-                let message = format!("{letter} has no meaning; add it to the chapter's table `letters`");
-                return Err(Fault::new(&chapter.file, line, message));
+                return Err(Fault::new(
+                    &chapter.file,
+                    line,
+                    format!("{letter} has no meaning in {FILE}; add it"),
+                ));
             }
         }
         before = own;
@@ -133,21 +143,19 @@ mod tests {
 
     #[test]
     fn contradictions_are_found() {
-        let chapters = || Chapter::read_all(&Library::of_checkout()).unwrap();
-        check(&chapters()).unwrap();
-        let fault = |change: &dyn Fn(&mut Chapter)| {
-            let mut chapters = chapters();
-            let place = chapters.iter().position(|chapter| chapter.id == "sphere").unwrap();
-            change(&mut chapters[place]);
-            check(&chapters).unwrap_err().to_string()
-        };
-        let twice =
-            fault(&|chapter| drop(chapter.facts.letters.insert("s".to_owned(), "half the chord".to_owned())));
-        assert!(twice.contains("05-sphere.md:1: s is"), "{twice}");
-        let common =
-            fault(&|chapter| drop(chapter.facts.letters.insert("r".to_owned(), "a ratio".to_owned())));
-        assert!(common.contains("r is"), "{common}");
-        let unknown = fault(&|chapter| chapter.body.push_str("\n\nSo $\\xi$.\n"));
-        assert!(unknown.contains("ξ has no meaning"), "{unknown}");
+        let library = Library::of_checkout();
+        let chapters = Chapter::read_all(&library).unwrap();
+        let read = || library.toml::<Letters>(FILE).unwrap();
+        check(&read(), &chapters).unwrap();
+        for (letter, meaning) in [("s", "half the chord"), ("r", "a ratio")] {
+            let mut letters = read();
+            letters.get_mut("sphere").unwrap().insert(letter.to_owned(), meaning.to_owned());
+            let fault = check(&letters, &chapters).unwrap_err().to_string();
+            assert!(fault.contains(&format!("{letter} is {meaning:?} in the chapter sphere")), "{fault}");
+        }
+        let mut letters = read();
+        letters.get_mut("sphere").unwrap().remove("k");
+        let fault = check(&letters, &chapters).unwrap_err().to_string();
+        assert!(fault.contains("05-sphere.md:") && fault.contains("k has no meaning"), "{fault}");
     }
 }

@@ -361,7 +361,7 @@ mod tests {
             ]
         );
         assert!(
-            html.contains("--share:0.125") && html.contains("Measured on 1 May, A CPU, 4 cores, by "),
+            html.contains("--share:0.125") && html.contains("Measured on 1 May, A CPU, 4 cores, Debian, by "),
             "{html}"
         );
         let refused = speed_tables(&kept(&bench(99))).unwrap_err().to_string();

@@ -49,7 +49,7 @@ pub struct Page {
 
 /// Renders everything. Fails with the first [`Fault`] of the texts, or if a stage has no data for a browser.
 pub fn render(site: &Site, is_quick: bool) -> Result<Page> {
-    letters::check(&site.chapters)?;
+    letters::check(&site.letters, &site.chapters)?;
     let mut uses = Uses::default();
     let chapters = html! { @for chapter in &site.chapters { (section(site, chapter, &mut uses)?) } };
     let count = |part: &str| chapters.0.matches(part).count();

@@ -3,6 +3,7 @@
 use crate::back_matter::{GLOSSARY, REFERENCES, Reference, Term};
 use crate::chapter::Chapter;
 use crate::highlight::Highlighter;
+use crate::letters::{self, Letters};
 use crate::library::{Entry, Fault, Library};
 use crate::measured::Measured;
 use crate::uses::Uses;
@@ -14,6 +15,8 @@ pub struct Site {
     /// Where diagrams are read from.
     pub library: Library,
     pub chapters: Vec<Chapter>,
+    /// The letters of formulas.
+    pub letters: Letters,
     /// In alphabetical order.
     pub terms: Vec<Entry<Term>>,
     /// In file order.
@@ -34,6 +37,7 @@ impl Site {
         Ok(Site {
             library: library.clone(),
             chapters: Chapter::read_all(library)?,
+            letters: library.toml(letters::FILE)?,
             terms,
             references: library.entries(REFERENCES)?,
             measured: Measured::read(library)?,

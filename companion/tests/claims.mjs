@@ -66,10 +66,10 @@ const LOWER_HALF = [0.05, 0.58, 0.3, 0.7], UPPER_THIRD = [0, 0, 1, 1 / 3], HORIZ
 const MIDDLE = [0.42, 0.35, 0.58, 0.65];
 
 export const claims = [
-  ["diffuse?depth=1", "leaves the ball black", (now) => now.light(MIDDLE) < 2],
-  ["diffuse?depth=1", "every surface is black", (now) => now.light([0, 0.7, 1, 1]) < 2 && now.light([0, 0, 1, 0.3]) > 150],
-  ["diffuse?depth=2", "light it from the sky", (now) => now.light(MIDDLE) > 40],
-  ["diffuse?depth=2", "the underside of the ball loses half", (now, was) => within(0.3, now.light(UNDER) / was.light(UNDER), 0.7)],
+  ["diffuse?bounces=0", "the ball is black", (now) => now.light(MIDDLE) < 2],
+  ["diffuse?bounces=0", "every surface is black", (now) => now.light([0, 0.7, 1, 1]) < 2 && now.light([0, 0, 1, 0.3]) > 150],
+  ["diffuse?bounces=1", "lights it from the sky", (now) => now.light(MIDDLE) > 40],
+  ["diffuse?bounces=1", "the underside of the ball loses half", (now, was) => within(0.3, now.light(UNDER) / was.light(UNDER), 0.7)],
   ["sky?vfov=120", "more blue at the top", (now, was) => now.at(240, 0)[0] < was.at(240, 0)[0] - 4],
   ["sky?vfov=120", "more white at the bottom", (now, was) => now.at(240, 269)[0] > was.at(240, 269)[0] + 4],
   ["sky?vfov=20", "nearly one colour", (now) => now.at(240, 269)[0] - now.at(240, 0)[0] < 30],
@@ -78,9 +78,9 @@ export const claims = [
   ["normals?vfov=120", "its colours stay", (now) => now.at(240, 135)[2] > 250 && now.at(240, 100)[1] > 180],
   ["antialiased?samples=1", "the staircase returns", (now, was) => now.mean((pixel, x, y) => far(pixel, was.at(x, y)), RIM) > 0.015],
   ["antialiased?samples=4", "a few steps of grey", (now, was) => within(0.004, now.mean((pixel, x, y) => far(pixel, was.at(x, y)), RIM), 0.015)],
-  ["shadow-acne?depth=3", "the ball turns a little darker", (now, was) => below(now.light(MIDDLE) / was.light(MIDDLE), 0.97)],
+  ["shadow-acne?bounces=2", "the ball turns a little darker", (now, was) => below(now.light(MIDDLE) / was.light(MIDDLE), 0.97)],
   ["metal?fuzz=0.2", "it blurs", (now, was) => below(now.steepest(MIRROR) / was.steepest(MIRROR), 0.6)],
-  ["metal?depth=2", "turns black", (now, was) => now.mean(isBlack, MIRROR) > 0.3 && was.mean(isBlack, MIRROR) < 0.01],
+  ["metal?bounces=1", "turns black", (now, was) => now.mean(isBlack, MIRROR) > 0.3 && was.mean(isBlack, MIRROR) < 0.01],
   ["metal-fuzzy?fuzz=1", "sky and ground mix in the left ball", (now, was) => {
     // Ground has no blue.
     const [blue, before] = [now, was].map((picture) => picture.mean(([, , b]) => b, LOWER_HALF));
@@ -104,5 +104,5 @@ export const claims = [
   ["defocus?focus=2.9", "focus on the hollow ball", (now, was) => now.rim() / was.rim() > 1.03 || now.rim() / was.rim()],
   ["book?vfov=60", "the sky fills the upper third", (now, was) => now.mean(isSky, UPPER_THIRD) > 0.99 && was.mean(isSky, UPPER_THIRD) < 0.9],
   ["book?defocus=0", "the horizon is a sharp line", (now, was) => now.steepest(HORIZON) / was.steepest(HORIZON) > 1.5 || now.steepest(HORIZON) / was.steepest(HORIZON)],
-  ["book?depth=2", "lose most of what they show", (now, was) => below(now.light(FOCUS) / was.light(FOCUS), 0.8)],
+  ["book?bounces=1", "lose most of what they show", (now, was) => below(now.light(FOCUS) / was.light(FOCUS), 0.8)],
 ];

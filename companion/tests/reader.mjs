@@ -106,7 +106,7 @@ const field = page.getByRole("searchbox");
 const topOf = (id) => page.evaluate((id) => Math.round(document.getElementById(id).getBoundingClientRect().top), id);
 const settled = () => page.waitForTimeout(600);
 await field.fill("zyzzyva");
-if (!(await page.locator(".found").innerText()).includes("Nothing")) seen.still.push("a search for nothing");
+if (!(await page.locator(".count").innerText()).includes("Nothing")) seen.still.push("a search for nothing");
 await field.fill("archimedes");
 await field.press("Enter");
 await settled();

@@ -42,7 +42,7 @@ Object.assign(diagrams, {
     state: { a: [235, 95], b: [330, 205], what: "a + b", s: 1.5 },
     handles: [handle("End of a", "a", [20, 15, 520, 260]), handle("End of b", "b", [20, 15, 520, 260])],
     choices: [{ key: "what", label: "Operation", options: ["a + b", "s a", "a · b", "a × b"] }],
-    sliders: [slider("s", "Number s", -1.5, 2, 0.1, fixed)],
+    sliders: [{ ...slider("s", "Number s", -1.5, 2, 0.1, fixed), also: { what: "s a" } }],
     draw({ a, b, what, s }) {
       const O = [200, 180], A = minus(a, O), B = minus(b, O), unitPx = 50, long = Math.hypot(...B), end = at(a, 1, B), [dotted, crossed] = [dot(A, B), A[1] * B[0] - A[0] * B[1]].map((x) => x / unitPx ** 2);
       const foot = at(O, dot(A, B) / (long * long || 1), B), piece = dot(A, B) / (long || 1) / unitPx;
@@ -51,7 +51,7 @@ Object.assign(diagrams, {
         "a + b": () => [line(a, end, "edge") + line(b, end, "edge") + arrow(O, end, "q3 thick") + vector(at(end, 1, [0, -8]), "a + b", "q3"), `a + b = (${fixed((A[0] + B[0]) / unitPx, 1)}, ${fixed(-(A[1] + B[1]) / unitPx, 1)}): along a, then along b, or the other way round.`],
         "s a": () => [line(at(O, -9, A), at(O, 9, A), "thin") + arrow(O, at(O, s, A), "q3 thick") + vector(at(at(O, s, A), 1, [24, -4]), `${fixed(s, 1)} a`, "q3"), `${fixed(s, 1)} a is ${fixed(Math.abs(s), 1)} times as long as a${s < 0 ? " and points the other way" : ""}.`],
         "a · b": () => [line(at(O, -9, B), at(O, 9, B), "thin") + line(a, foot, "edge") + line(O, foot, "q3 thick") + spot(foot, fixed(piece), "q3"), `a reaches ${fixed(piece)} along b, and b is ${fixed(long / unitPx)} long: a · b = ${fixed(dotted)}${Math.abs(dotted) < 0.05 ? ", a right angle" : ""}.`],
-        "a × b": () => [polygon([O, a, end, b], "q3 filled") + circle(O, 9, "q3") + (crossed > 0 ? line(at(O, 6, [-1, -1]), at(O, 6, [1, 1]), "q3") + line(at(O, 6, [-1, 1]), at(O, 6, [1, -1]), "q3") : circle(O, 3, "q3 solid")), `a × b points ${crossed > 0 ? "into" : "out of"} the page and is ${fixed(Math.abs(crossed))} long, the area of the parallelogram.`],
+        "a × b": () => [polygon([O, a, end, b], "q3 filled") + circle(O, 9, "q3") + (crossed < 0 ? line(at(O, 6, [-1, -1]), at(O, 6, [1, 1]), "q3") + line(at(O, 6, [-1, 1]), at(O, 6, [1, -1]), "q3") : circle(O, 3, "q3 solid")), `a × b points ${crossed < 0 ? "into" : "out of"} the page and is ${fixed(Math.abs(crossed))} long, the area of the parallelogram.`],
       };
       const [shown, words] = shapes[what]();
       return [grid + shown + arrow(O, a, "q1 thick") + vector(at(a, 14, unit(A)), "a", "q1") + arrow(O, b, "q4 thick") + vector(at(b, 14, unit(B)), "b", "q4") + circle(O, 3.5, "solid"), words];

@@ -52,7 +52,7 @@ Object.assign(diagrams, {
       // Where a ray near the axis crosses it, in radii behind the centre.
       const aside = [-axis[1], axis[0]], height = dot(minus(near.q, C), aside), slope = dot(near.end, aside) / dot(near.end, axis), crossing = height * slope < 0 ? (dot(minus(near.q, C), axis) - height / slope) / r : Infinity;
       const corner = ({ p, n, inside }) => line(at(p, 30, n), at(p, -46, n), "thin") + angle(p, at([0, 0], -1, n), inside, 30, "θₜ", "q2"), mirrored = { p: marked.q, n: at([0, 0], -1, marked.out), inside: at([0, 0], -1, marked.inside) };
-      const svg = line(eye, at(eye, 560, axis), "thin") + ball(C, r) + range(9, (i) => drawn(trace(-0.88 + 0.22 * i), "q1 faint")).join("") + drawn(marked, "q3 thick") + corner(marked) + corner(mirrored) + circle(C, 3.5, "solid") + vector(at(C, 1, [0, 18]), "C") + circle(eye, 6, "solid") + label(at(eye, 1, [-8, 24]), "eye") + (crossing < 5 ? spot(at(C, crossing * r, axis), "", "q4") : "");
+      const svg = line(eye, at(eye, 560, axis), "thin") + ball(C, r) + range(9, (i) => drawn(trace(-0.88 + 0.22 * i), "q1 faint")).join("") + drawn(marked, "q3 thick") + corner(marked) + corner(mirrored) + circle(C, 3.5, "solid") + vector(at(C, 1, [0, -9]), "C") + circle(eye, 6, "solid") + label(at(eye, 1, [-8, 24]), "eye") + (crossing < 5 ? spot(at(C, crossing * r, axis), "", "q4") : "");
       const turn = Math.acos(Math.min(1, -dot(marked.inside, marked.n)));
       return [svg, `Index ${fixed(index)}, eye ${fixed(away / r, 1)} radii away: rays near the axis ${crossing < 50 ? `cross ${fixed(crossing, 1)} radii behind the centre; beyond that, all is reversed` : "do not cross behind the ball, so its middle is upright"}. The marked ray has θₜ = ${degrees(turn, 1)} at both ends of its chord.`];
     },

@@ -42,7 +42,7 @@ Object.assign(diagrams, {
       const values = range(N, (i) => direction(random(2 * i, seed), random(2 * i + 1, seed))), means = [];
       values.reduce((sum, d, i) => (means[i] = (sum + light(-d[1]))) && sum + light(-d[1]), 0);
       const whole = range(4096, (i) => light(-direction(...point(true, i, 1))[1])).reduce((a, b) => a + b, 0) / 4096;
-      const plot = (k, y) => [320 + (k / 10) * 220, 235 - 170 * y], curveOf = range(N, (i) => plot(Math.log2(i + 1), means[i] / (i + 1)));
+      const plot = (k, y) => [320 + (k / 10) * 205, 235 - 170 * y], curveOf = range(N, (i) => plot(Math.log2(i + 1), means[i] / (i + 1)));
       const rays = values.slice(0, 256).map((d) => line(P, at(P, 80, d), -d[1] > 0 ? "q1 faint" : "q5 faint")).join("");
       const svg = box([0, 233, 290, 57], "gap") + ball(C, 68) + rays + arrow(P, at(P, 44, n), "q2 thick") + vector(at(P, 56, n), "n", "q2") + circle(P, 4, "solid") + label([10, 24], "sky", "weak") + label([10, 280], "ground", "weak") +
         line(plot(0, 0), plot(10, 0), "axis") + line(plot(0, 0), plot(0, 1), "axis") + line(plot(0, whole), plot(10, whole), "q2 edge") + label(at(plot(10, whole), 1, [0, -6]), "whole hemisphere", "q2", "end") + curve(curveOf, "q1") + spot(curveOf.at(-1), "", "q1") +
@@ -138,14 +138,14 @@ Object.assign(diagrams, {
     title: "From a number to a byte and to light",
     size: [560, 300],
     hint: "Drag the number along its axis.",
-    state: { x: [165, 235] },
-    handles: [handle("Number", "x", [40, 235, 250, 0])],
+    state: { x: [177, 235] },
+    handles: [handle("Number", "x", [52, 235, 250, 0])],
     draw({ x }) {
-      const v = (x[0] - 40) / 250, plot = (a, y) => [40 + 250 * a, 235 - 205 * y], byte = (a) => Math.floor(256 * Math.min(a, 0.999)), shown = (a) => (byte(a) / 255) ** 2.2;
+      const v = (x[0] - 52) / 250, plot = (a, y) => [52 + 250 * a, 235 - 205 * y], byte = (a) => Math.floor(256 * Math.min(a, 0.999)), shown = (a) => (byte(a) / 255) ** 2.2;
       const curveOf = (code, kind) => curve(range(65, (i) => plot(i / 64, shown(code(i / 64)))), kind), grey = (a) => `style="fill:rgb(${range(3, () => byte(a))})"`;
       const rows = [["linear", (a) => a, "q3", 60], ["square root", Math.sqrt, "q2", 140]];
       const svg = [0, 0.5, 1].map((y) => line(plot(0, y), plot(1, y), "fine") + label(at(plot(0, y), 1, [-6, 4]), percent(y), "weak", "end")).join("") + line(plot(0, 0), plot(1, 0), "axis") + line(plot(0, 0), plot(1, 1), "thin") + rows.map(([name, code, kind, y]) => curveOf(code, kind) + line(plot(v, 0), plot(v, shown(code(v))), `${kind} edge`) + spot(plot(v, shown(code(v))), byte(code(v)), kind) +
-        label([320, y - 8], `${name}: byte ${byte(code(v))}`, kind) + box([470, y - 26, 70, 26], "swatch", grey(code(v))) + range(9, (i) => box([320 + 24.4 * i, y, 24.4, 30], "plain", grey(code((i + 0.5) / 9)))).join("")).join("") + label([165, 262], "number: linear light", "weak", "middle") + label([36, 18], "light of the display", "weak") + label([320, 196], "equal steps of light look unequal", "weak");
+        label([320, y - 8], `${name}: byte ${byte(code(v))}`, kind) + box([506, y, 40, 30], "swatch", grey(code(v))) + range(9, (i) => box([320 + 20 * i, y, 20, 30], "plain", grey(code((i + 0.5) / 9)))).join("")).join("") + label([177, 266], "number: linear light", "weak", "middle") + label([36, 18], "light of the display", "weak") + label([320, 196], "equal steps of light", "weak");
       return [svg, `Number ${fixed(v)}. ` + rows.map(([name, code]) => `${name[0].toUpperCase() + name.slice(1)}: byte ${byte(code(v))}, ${percent(shown(code(v)))} of white`).join(". ") + "."];
     },
   },

@@ -67,8 +67,8 @@ Object.assign(diagrams, {
     draw({ n, s }) {
       const plot = (k, gain) => [60 + 33 * k, 225 - 20 * Math.log2(gain)], gain = (share, workers) => 1 / (share + (1 - share) / workers), workers = Math.round(2 ** ((n[0] - 60) / 33)), here = gain(s, workers);
       const of = (share, kind) => curve(range(41, (i) => plot(i / 4, gain(share, 2 ** (i / 4)))), kind);
-      const svg = [0, 2, 4, 6, 8, 10].map((k) => line(plot(k, 1), plot(k, 1024), "fine") + label(at(plot(k, 1), 1, [0, 18]), 2 ** k, "weak", "middle") + line(plot(0, 2 ** k), plot(10, 2 ** k), "fine") + label(at(plot(0, 2 ** k), 1, [-8, 4]), 2 ** k, "weak", "end")).join("") + of(0, "thin") + [0.01, 0.1, 0.25].map((share) => of(share, "fine")).join("") + of(s, "q1 thick") + (s > 0 ? line(plot(0, 1 / s), plot(10, 1 / s), "q3 edge") + label(at(plot(10, 1 / s), 1, [8, 5]), "1 / s", "q3 letter") : "") +
-        line(plot(Math.log2(workers), 1), plot(Math.log2(workers), here), "q4 edge") + spot(plot(Math.log2(workers), here), fixed(here, 1), "q1") + label([225, 262], "workers n", "weak", "middle") + label([66, 14], "times as fast", "weak") + label([400, 24], "all in parallel", "weak");
+      const svg = [0, 2, 4, 6, 8, 10].map((k) => line(plot(k, 1), plot(k, 1024), "fine") + label(at(plot(k, 1), 1, [0, 23]), 2 ** k, "weak", "middle") + line(plot(0, 2 ** k), plot(10, 2 ** k), "fine") + label(at(plot(0, 2 ** k), 1, [-8, 4]), 2 ** k, "weak", "end")).join("") + of(0, "thin") + [0.01, 0.1, 0.25].map((share) => of(share, "fine")).join("") + of(s, "q1 thick") + (s > 0 ? line(plot(0, 1 / s), plot(10, 1 / s), "q3 edge") + label(at(plot(10, 1 / s), 1, [8, 5]), "1 / s", "q3 letter") : "") +
+        line(plot(Math.log2(workers), 1), plot(Math.log2(workers), here), "q4 edge") + spot(plot(Math.log2(workers), here), fixed(here, 1), "q1") + label([225, 265], "workers n", "weak", "middle") + label([66, 14], "times as fast", "weak") + label([400, 24], "all in parallel", "weak");
       return [svg, `s = ${fixed(s)}, n = ${workers}: ${fixed(here, 1)} times as fast${s > 0 ? `, and never more than ${fixed(1 / s, 1)} times` : ""}.`];
     },
   },
@@ -116,10 +116,10 @@ Object.assign(diagrams, {
     state: { order: 3 },
     sliders: [slider("order", "Shuffle", 1, 20, 1)],
     draw({ order }) {
-      const given = [100000000, -100000000, 3, 5, 7], shuffled = given.map((x, i) => [random(i, order), x]).sort((a, b) => a[0] - b[0]).map(([, x]) => x), show = (x) => fixed(x, 0).replace(/\d(?=(\d{3})+$)/g, "$&,");
+      const given = [20000000, -20000000, 3, 5, 7], shuffled = given.map((x, i) => [random(i, order), x]).sort((a, b) => a[0] - b[0]).map(([, x]) => x), show = (x) => fixed(x, 0).replace(/\d(?=(\d{3})+$)/g, "$&,");
       const sums = (list, add) => list.reduce((all, x) => [...all, add(all.at(-1) ?? 0, x)], []), floats = (a, b) => single(a + b), exact = (a, b) => a + b, names = ["added", "float", "whole"];
       const results = [];
-      const table = (list, y, title) => label([8, y], title, "weak") + [list, sums(list, floats), sums(list, exact)].map((row, k) => { results.push(row.at(-1)); return label([8, y + 24 + 22 * k], names[k], k === 1 ? "q3" : k === 2 ? "q2" : "") + row.map((x, i) => label([165 + 97 * i, y + 24 + 22 * k], show(x), `${k === 1 && x !== sums(list, exact)[i] ? "q3" : k === 2 ? "q2" : k === 1 ? "" : "weak"}`, "end")).join(""); }).join("");
+      const table = (list, y, title) => label([8, y], title, "weak") + [list, sums(list, floats), sums(list, exact)].map((row, k) => { results.push(row.at(-1)); return label([8, y + 24 + 22 * k], names[k], k === 1 ? "q3" : k === 2 ? "q2" : "") + row.map((x, i) => label([158 + 99 * i, y + 24 + 22 * k], show(x), `${k === 1 && x !== sums(list, exact)[i] ? "q3" : k === 2 ? "q2" : k === 1 ? "" : "weak"}`, "end")).join(""); }).join("");
       const svg = table(given, 22, "in this order: each column adds one number") + table(shuffled, 134, "in another order");
       return [svg, `As floats the sums are ${show(results[1])} and ${show(results[4])}; as whole numbers ${show(results[2])} and ${show(results[5])}.`];
     },

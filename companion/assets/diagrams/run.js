@@ -1,12 +1,12 @@
 const NS = "http://www.w3.org/2000/svg";
 
 // A row below a diagram with a slider.
-function sliderRow({ key, label, min, max, step, show }, state, changed) {
+function sliderRow({ key, label, min, max, step, show, also }, state, changed) {
   const row = document.createElement("label"), input = document.createElement("input"), output = document.createElement("output");
   Object.assign(input, { type: "range", min, max, step });
   input.value = state[key];
   input.oninput = () => {
-    state[key] = Number(input.value);
+    Object.assign(state, { [key]: Number(input.value) }, also);
     output.textContent = show(state[key]);
     changed();
   };
@@ -25,13 +25,12 @@ function choiceRow({ key, label, options }, state, changed) {
     const button = Object.assign(document.createElement("button"), { type: "button", textContent: option });
     button.onclick = () => {
       state[key] = option;
-      press();
       changed();
     };
     return button;
   });
   const press = () => buttons.forEach((button) => button.setAttribute("aria-pressed", button.textContent === state[key]));
-  press();
+  row.press = press;
   row.append(`${label} `, ...buttons);
   return row;
 }
@@ -73,11 +72,13 @@ function start(figure, { size, narrow, state, hint = "", handles = [], choices =
       knob.setAttribute("aria-valuetext", reading.textContent);
     };
   });
+  const rows = choices.map((choice) => choiceRow(choice, state, show));
   function show() {
     const isNarrow = narrow && isPhone.matches, [shapes, words] = draw(state, isNarrow);
     svg.setAttribute("viewBox", `0 0 ${(isNarrow ? narrow : size).join(" ")}`);
     layer.innerHTML = shapes;
     reading.textContent = words;
+    rows.forEach((row) => row.press());
     knobs.forEach((knob) => knob());
   }
   const told = Object.assign(document.createElement("p"), { className: "hint", textContent: hint });
@@ -85,7 +86,7 @@ function start(figure, { size, narrow, state, hint = "", handles = [], choices =
   layer.onpointerover = ({ target }) => {
     for (const shape of layer.querySelectorAll("[data-node]")) shape.classList.toggle("lit", shape.dataset.node === target.dataset.node);
   };
-  controls.append(...(hint ? [told] : []), ...choices.map((choice) => choiceRow(choice, state, show)), ...sliders.map((slider) => sliderRow(slider, state, show)), reading);
+  controls.append(...(hint ? [told] : []), ...rows, ...sliders.map((slider) => sliderRow(slider, state, show)), reading);
   figure.querySelector(".scroll").after(controls);
   if (narrow) isPhone.addEventListener("change", show);
   show();
