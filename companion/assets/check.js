@@ -261,7 +261,7 @@ onmessage = ({ data: [module, args, files] }) => {
     take(input.files);
     input.value = "";
   });
-  // What is dragged from the page itself carries a mark.
+  // Pictures that are dragged from the page itself carry a mark.
   const OWN = "text/x-weekender";
   addEventListener("dragstart", (event) => event.dataTransfer?.setData(OWN, ""));
   const isFile = ({ dataTransfer }) => dataTransfer?.types.includes("Files") && !dataTransfer.types.includes(OWN);

@@ -17,7 +17,7 @@ const SYNTAXES: [&str; 5] = [
     include_str!("../assets/syntaxes/sh.sublime-syntax"),
 ];
 
-/// What is not highlighted.
+/// Languages without highlighting.
 const PLAIN: [&str; 2] = ["text", "toml"];
 
 pub struct Highlighter(SyntaxSet);

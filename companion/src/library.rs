@@ -93,7 +93,7 @@ pub struct Fault {
     pub file: String,
     /// Counted from 1; 0 if the fault concerns the whole file.
     pub line: usize,
-    /// What is wrong and how to fix it.
+    /// The mistake and its remedy.
     pub message: String,
 }
 

@@ -176,7 +176,7 @@ fn sampled(recipe: &Recipe, is_denoised: bool) -> Result<Vec<u8>> {
     Ok(film.to_rgb8(recipe.rules.transfer))
 }
 
-/// Removes what no page uses any more.
+/// Removes pictures that the page does not use.
 pub fn remove_others(out: &Path, pictures: &[Picture]) -> Result<()> {
     let used: BTreeSet<PathBuf> = pictures.iter().map(|picture| out.join(picture.file())).collect();
     for entry in fs::read_dir(out.join(FOLDER))? {

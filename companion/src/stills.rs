@@ -109,7 +109,7 @@ impl Outcome {
     pub fn report(&self, made: &Path, interrupt: &Interrupt) -> Result<ExitCode, Failure> {
         if self.missing > 0 {
             let missing = counted(self.missing as u64, "picture");
-            console::note(&format!("interrupted: {missing} missing; run the same command again to go on"));
+            console::note(&format!("interrupted: {missing} missing; run the same command again to continue"));
             return Ok(interrupt.exit_code());
         }
         let rendered = counted(self.rendered as u64, "picture");

@@ -1,4 +1,4 @@
-//! What the texts have referred to so far.
+//! References that the texts have made so far.
 
 use crate::picture::Picture;
 use std::collections::{BTreeMap, BTreeSet};

@@ -161,7 +161,7 @@ Object.assign(diagrams, {
       const ups = range(step, (k) => arrow(ends[k], ends[k + 1], "q2 thick") + vector(at(along(ends[k], ends[k + 1], 0.5), 1, [34, 4]), "cos θ n", "q2")).join("");
       const svg = box([0, 150, 560, 110], "body plain") + line([0, 150], [560, 150], "axis") + arrow(p, P, "q1 thick") + vector(at(along(p, P, 0.45), 13, [d[1], -d[0]]), "d", "q1") + arrow(P, ends[0], "q1 thick") + vector(at(along(P, ends[0], 0.6), 13, [-d[1], d[0]]), "d", "q1") + arrow(P, at(P, 100, [0, -1]), "q2") + vector([268, 58], "n", "q2") + angle(P, [0, -1], unit(minus(p, P)), 36, "θ") +
         ups + (step === 2 ? arrow(P, r, "q3 thick") + vector(at(r, 14, unit(minus(r, P))), "r", "q3") : "") + circle(P, 4, "solid");
-      return [svg, `cos θ = ${fixed(cosine)}. ${["d goes on into the metal", "d + cos θ n lies in the surface", "r = d + 2 cos θ n leaves it at the same angle"][step]}; its length is ${fixed(Math.hypot(...minus(ends[step], P)) / 100)}.`];
+      return [svg, `cos θ = ${fixed(cosine)}. ${["d continues into the metal", "d + cos θ n lies in the surface", "r = d + 2 cos θ n leaves it at the same angle"][step]}; its length is ${fixed(Math.hypot(...minus(ends[step], P)) / 100)}.`];
     },
   },
   fuzz: {

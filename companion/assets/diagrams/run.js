@@ -15,7 +15,7 @@ function sliderRow({ key, label, min, max, step, show, also }, state, changed) {
   return row;
 }
 
-// A row of buttons, one of which is pressed.
+// A row of buttons; the chosen one is pressed.
 function choiceRow({ key, label, options }, state, changed) {
   const row = document.createElement("div");
   row.className = "choices";
@@ -82,7 +82,7 @@ function start(figure, { size, narrow, state, hint = "", handles = [], choices =
     knobs.forEach((knob) => knob());
   }
   const told = Object.assign(document.createElement("p"), { className: "hint", textContent: hint });
-  // What belongs together lights up together.
+  // A box and its node in the tree light up together.
   layer.onpointerover = ({ target }) => {
     for (const shape of layer.querySelectorAll("[data-node]")) shape.classList.toggle("lit", shape.dataset.node === target.dataset.node);
   };

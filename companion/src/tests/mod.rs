@@ -54,7 +54,7 @@ fn driver(name: &str) -> Command {
     node
 }
 
-/// The reason why there is no browser to use; `None` if there is one.
+/// Reason why no browser can be used, if it cannot.
 fn obstacle() -> Option<String> {
     let lacks = |program: &str| Command::new(program).arg("--version").output().is_err();
     let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/node_modules/playwright-core");

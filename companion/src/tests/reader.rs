@@ -2,6 +2,8 @@
 
 use super::{PAGE, driver, obstacle, skip};
 use serde_json::{Value, json};
+use std::path::Path;
+use std::process::Command;
 
 #[test]
 fn a_reader_can_use_the_page() {
@@ -14,5 +16,26 @@ fn a_reader_can_use_the_page() {
     for key in ["console", "cut", "still", "links"] {
         assert_eq!(seen[key], json!([]), "{key}");
     }
-    assert!(seen["diagrams"].as_u64() >= Some(11) && seen["linkCount"].as_u64() > Some(20), "{seen}");
+    assert!(seen["diagrams"].as_u64() >= Some(28) && seen["linkCount"].as_u64() > Some(20), "{seen}");
+}
+
+/// Each drawing's still is the one that its script draws.
+#[test]
+fn stills_of_diagrams_are_up_to_date() {
+    if let Some(reason) = obstacle() {
+        return skip("BROWSER", &reason);
+    }
+    let texts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/companion");
+    let drawn = tempfile::tempdir().unwrap();
+    let output = Command::new("node").arg(texts.join("stills.mjs")).arg(drawn.path()).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let mut count = 0;
+    for entry in drawn.path().read_dir().unwrap() {
+        let name = entry.unwrap().file_name();
+        let [new, kept] =
+            [drawn.path(), &texts.join("diagrams")].map(|folder| std::fs::read(folder.join(&name)).unwrap());
+        assert!(new == kept, "{name:?} is old: node docs/companion/stills.mjs");
+        count += 1;
+    }
+    assert!(count > 20);
 }
