@@ -157,7 +157,7 @@ onmessage = ({ data: [module, args, files] }) => {
       const chosen = stage ? ["--stage", stage] : [];
       worker.postMessage([module, ["check", "--progress", "on", "--out", FOLDER, "--json", FINDING, ...chosen, "--", name], { [name]: new Uint8Array(data) }]);
     } catch (error) {
-      if (!isOther()) refuse(...(error.message === "missing" ? missing() : [`${error}`]));
+      if (!isOther()) refuse(...(error.message === "missing" ? ["The file check.js is missing beside this page.", ...instead] : [`${error}`]));
     }
   };
   const FOLDER = ".weekender", FINDING = `${FOLDER}/finding.json`;

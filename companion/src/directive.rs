@@ -183,7 +183,7 @@ fn code(site: &Site, place: &Place<'_>, wanted: &str, why: &str) -> Result<Marku
                     }
                 }
             }
-            @if !reason.is_empty() { p .without { "Not in " (lacking.join(" or ")) ": " (typographic(reason)) "." } }
+            @if !reason.is_empty() { p .without { "Not shown in " (lacking.join(" or ")) ": " (typographic(reason)) "." } }
             @for excerpt in &excerpts {
                 @let language = excerpt.language();
                 @let Excerpt { file, first, last, text } = excerpt;

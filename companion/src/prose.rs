@@ -2,6 +2,7 @@
 
 use crate::chapter::Chapter;
 use crate::figure::Figure;
+use crate::letters;
 use crate::library::{Fault, line_of};
 use crate::live;
 use crate::picture::Picture;
@@ -296,6 +297,11 @@ impl Converter<'_> {
     }
 
     fn formula(&self, latex: &str, display: MathDisplay) -> Result<Markup> {
+        let chapter = self.place.chapter.map(|chapter| chapter.id.as_str());
+        if let Some(letter) = chapter.and_then(|chapter| letters::unknown(&self.site.letters, chapter, latex))
+        {
+            bail!("{letter} has no meaning in this chapter; add it to {}", letters::FILE);
+        }
         match self.site.formulas.convert_with_local_state(latex.trim(), display) {
             Ok(converted) => Ok(self.place.coloured(&PreEscaped(converted.mathml))),
             Err(error) => bail!("the formula {:?} is not understood: {error}", latex.trim()),

@@ -176,6 +176,49 @@ for (const link of await page.locator("a.try").all()) {
   }
 }
 seen.links.push(...claims.filter((row) => !found.has(row)).map(([key, words]) => `${key}: no link says “${words}”`));
+
+// A label says what its picture shows, and Reset and Stop bring the usual numbers back.
+const linked = page.locator('a.try[data-set="samples=1"]'), named = page.locator('#figure-antialiasing .panel[data-stage="antialiased"] .label');
+await placed(linked);
+await linked.click();
+if ((await named.innerText()) !== "1 sample per pixel") seen.still.push(`a label: ${await named.innerText()}`);
+await page.locator('#figure-antialiasing .panel[data-stage="antialiased"]').evaluate((panel) => panel.live.stop(""));
+if ((await named.innerText()) !== "64 samples per pixel") seen.still.push(`a label after Stop: ${await named.innerText()}`);
+
+// The right picture beside a mistake comes by keys, too.
+const mistake = page.locator(".mistakes[data-has-right] img[tabindex]").first();
+await mistake.focus();
+if ((await mistake.locator("xpath=following-sibling::img").evaluate((right) => getComputedStyle(right).opacity)) !== "1") seen.still.push("a mistake, by keys");
+
+// A dropped file does not replace the page, and one line says what to do instead.
+const dropped = await page.evaluate(() => {
+  const dataTransfer = new DataTransfer();
+  dataTransfer.items.add(new File(["P6"], "mine.ppm"));
+  const event = new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true });
+  document.querySelector("#figure-metal").dispatchEvent(event);
+  return event.defaultPrevented && document.querySelectorAll(".check-missing, .cover .check-box").length === 1;
+});
+if (!dropped) seen.still.push("a drop");
+
+// [ and ] make a place to come back to.
+await page.evaluate(() => document.getElementById("diffuse").scrollIntoView());
+await settled();
+await page.keyboard.press("]");
+await settled();
+if (!page.url().endsWith("#metal")) seen.still.push(`] leads to ${page.url()}`);
+
+// Without WebGPU, a link shows a still of its state.
+const plain = await browser.newPage({ viewport: { width: 1280, height: 900 } });
+await plain.addInitScript(() => Object.defineProperty(Navigator.prototype, "gpu", { get: () => undefined }));
+await plain.goto(pathToFileURL(process.argv[2]).href);
+await plain.locator(".live-notice").waitFor();
+await plain.locator('a.try[data-stage="antialiased"]').first().click();
+const shows = plain.locator('.panel[data-stage="antialiased"]:has(.live-back)');
+if (!(await shows.locator("img").first().getAttribute("src")).includes("antialiased-try")) seen.still.push("a link without WebGPU");
+if ((await shows.locator(".label").innerText()) !== "1 sample per pixel") seen.still.push("a label without WebGPU");
+await shows.locator(".live-back").click();
+if ((await shows.locator("img").first().getAttribute("src")).includes("try")) seen.still.push("the usual picture without WebGPU");
+if (await plain.locator(".runs:visible, .live-bar button:visible:text-is('Run')").count()) seen.still.push("Run, where nothing runs");
 seen.linkCount = await page.locator("a.try").count();
 console.log(JSON.stringify(seen));
 await browser.close();

@@ -32,7 +32,7 @@ Object.assign(diagrams, {
       const svg = scene + factors.join("") + label(at(place(0), 1, [0, -8]), "product", "weak") + swatch(end, 70, pixel) + label(at(end, 1, isNarrow ? [0, 92] : [80, 39]), "= pixel");
       const route = steps.map(({ ball }) => ball?.name ?? "sky").join(" → ");
       const numbers = (c) => c.map((x) => fixed(x)).join(", ");
-      return [svg, `Seed ${seed}, pixel ${row + 1}: ${route}. ` + (isLit ? `Product (${numbers(throughput)}) × sky (${numbers(sky(last.sky))}) = pixel (${numbers(pixel)}).` : "Six rays, and still no sky: black.")];
+      return [svg, `Seed ${seed}, pixel ${row + 1}: ${route}. ` + (isLit ? `Product (${numbers(throughput)}) × sky (${numbers(sky(last.sky))}) = pixel (${numbers(pixel)}).` : "Five bounces, and still no sky: black.")];
     },
   },
   vectors: {

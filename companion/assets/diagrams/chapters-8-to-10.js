@@ -54,17 +54,17 @@ Object.assign(diagrams, {
     title: "A path and its throughput",
     size: [560, 300],
     hint: "Drag the aim of the camera ray, and change the random numbers.",
-    state: { aim: [160, 140], rays: 6, seed: 3 },
+    state: { aim: [160, 140], bounces: 5, seed: 3 },
     handles: [handle("Aim of the camera ray", "aim", [60, 20, 480, 225])],
-    sliders: [slider("rays", "Rays per path", 1, 8, 1), slider("seed", "Random numbers", 1, 30, 1)],
+    sliders: [slider("bounces", "Bounces", 0, 7, 1), slider("seed", "Random numbers", 1, 30, 1)],
     draw(s) {
-      const { steps, throughput, isLit } = walk([30, 120], s.aim, s.rays, s.seed, ROOM), products = steps.flatMap(({ throughput: t }) => (t ? [t] : []));
+      const { steps, throughput, isLit } = walk([30, 120], s.aim, s.bounces + 1, s.seed, ROOM), products = steps.flatMap(({ throughput: t }) => (t ? [t] : []));
       const balls = ROOM.map(({ c, r, colour }) => `<circle cx="${c[0]}" cy="${c[1]}" r="${r}" class="plain" style="fill:${rgb(colour)}"/>` + (r < 100 ? circle(at(c, 0.36 * r, [-0.6, -0.8]), 0.42 * r, "shine") : ""));
       const rays = steps.map(({ o, p, n }) => arrow(o, n ? p : at(o, 90, unit(minus(p, o))), "q1 thick") + (n ? arrow(p, at(p, 26, n), "q2") + circle(p, 3.5, "solid") : label(at(at(o, 100, unit(minus(p, o))), 1, [4, 0]), "sky", "weak")));
       const shown = isLit ? products : [...products, [0, 0, 0]], swatches = shown.map((t, i) => box([70 + 52 * i, 262, 30, 30], "swatch", `style="fill:${rgb(t)}"`) + (i ? label([61 + 52 * i, 282], "→", "weak", "middle") : ""));
       const svg = `<svg x="0" y="0" width="560" height="252" viewBox="0 0 560 252">${balls.join("")}${rays.join("")}${circle([30, 120], 6, "solid")}${label([12, 145], "eye")}</svg>` + label([8, 282], "product", "weak") + swatches.join("") + label([70 + 52 * shown.length, 282], isLit ? "× the sky’s light" : "cut off", "weak");
       const product = throughput.map((x) => fixed(x)).join(", "), climb = Math.atan2(120 - s.aim[1], s.aim[0] - 30);
-      return [svg, `At most ${s.rays} rays, seed ${s.seed}, camera ray at ${degrees(climb, 1)}: ${steps.map(({ ball }) => ball?.name ?? "sky").join(" → ")}. ` + (isLit ? `Throughput (${product}) times the light of the sky.` : `Cut off after ${s.rays} ${s.rays === 1 ? "ray" : "rays"}: black.`)];
+      return [svg, `At most ${s.bounces} ${s.bounces === 1 ? "bounce" : "bounces"}, seed ${s.seed}, camera ray at ${degrees(climb, 1)}: ${steps.map(({ ball }) => ball?.name ?? "sky").join(" → ")}. ` + (isLit ? `Throughput (${product}) times the light of the sky.` : "Cut off: black.")];
     },
   },
   acne: {

@@ -106,6 +106,11 @@ fn a_reader_can_check_a_picture() {
             Err(message) => {
                 let reason = message.trim().trim_start_matches("error: ");
                 let said = answer["explanation"].as_str().unwrap().trim_end_matches('.');
+                // The page has less memory, and says so before it begins.
+                if name == "large.ppm" {
+                    assert!(said.contains("more pixels") && said.contains("400 x 225"), "{said}");
+                    continue;
+                }
                 assert_eq!(said.to_lowercase(), reason.to_lowercase(), "{name}");
             }
         }

@@ -39,3 +39,22 @@ fn stills_of_diagrams_are_up_to_date() {
     }
     assert!(count > 20);
 }
+
+/// Numbers and names that scripts repeat are those of the sources.
+#[test]
+fn scripts_agree_with_sources() {
+    let read =
+        |path: &str| std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap();
+    let (kit, rng) = (read("assets/diagrams/kit.js"), read("../shaders/rng.wgsl").to_lowercase());
+    let sobol = kit.split("function sobol").nth(1).unwrap().split("\n}").next().unwrap();
+    let numbers: Vec<&str> =
+        sobol.split(|c: char| !c.is_alphanumeric()).filter(|word| word.len() == 10).collect();
+    assert!(numbers.len() == 7, "{numbers:?}");
+    for number in numbers {
+        assert!(rng.contains(number), "{number}");
+    }
+    let (film, adapter) = (read("assets/film.js"), read("../src/render_gpu/adapter.rs"));
+    let names = film.split("|| /").nth(1).unwrap().split("/i").next().unwrap();
+    let quoted: Vec<String> = names.split('|').map(|name| format!("\"{name}\"")).collect();
+    assert!(adapter.contains(&format!("[{}]", quoted.join(", "))), "{names}");
+}

@@ -118,7 +118,7 @@ fn directives_render() {
         &site,
         "{{code without C: a reason\nshaders/lanes.wgsl: fn dot3\nsrc/render_cpu/lanes/vector.rs: pub fn dot\n}}",
     );
-    assert!(code.contains("<p class=\"without\">Not in C: a reason.</p>"), "{code}");
+    assert!(code.contains("<p class=\"without\">Not shown in C: a reason.</p>"), "{code}");
     assert!(code.contains("<figure class=\"code shown\" data-language=\"wgsl\">"), "{code}");
     assert!(code.contains("<figure class=\"code\" data-language=\"rs\">"), "{code}");
     assert!(code.contains("shaders/lanes.wgsl</code> <span class=\"lines\">lines "), "{code}");
@@ -216,6 +216,7 @@ fn errors_in_texts_name_the_line() {
         ("## 6.1 Another Title", "is called \"Shading with Surface Normals\""),
         ("### Title", "have two #"),
         ("$\\nosuch$", "is not understood"),
+        ("$\\xi$", "ξ has no meaning"),
         ("```cobol\nx\n```", "\"cobol\" has no colours"),
         ("<b>x</b>", "HTML and pictures are not allowed"),
     ] {
