@@ -89,7 +89,7 @@
     texts ??= [...document.querySelectorAll(".chapter :is(p, li, td, dd, figcaption, pre)")].filter((element) => !element.querySelector("p, li, td")).map((element) => [element, element.textContent.replace(/\s+/g, " ")]);
     // The beginning of a word counts more than its middle.
     const hit = (text, show) => {
-      const place = text.toLowerCase().search(new RegExp(`(?<!\\p{L})${RegExp.escape?.(wanted) ?? wanted.replace(/[^\p{L}\d]/gu, "\\$&")}`, "u"));
+      const place = text.toLowerCase().search(new RegExp(`(?<!\\p{L})${wanted.replace(/[\\^$.*+?()[\]{}|/]/g, "\\$&")}`, "u"));
       return place >= 0 ? [{ rank: 0, show: () => show(place) }] : text.toLowerCase().includes(wanted) ? [{ rank: 1, show: () => show(text.toLowerCase().indexOf(wanted)) }] : [];
     };
     const hits = [...headings.flatMap((heading) => hit(words(heading), () => entry(heading))), ...texts.flatMap(([element, text]) => hit(text, (place) => quote(element, text, place)))];

@@ -121,13 +121,14 @@ impl Measured {
 fn speed_tables(kept: &Kept) -> Result<Markup> {
     let json = &kept.json;
     ensure!(json["schema"] == measure::SCHEMA, "is no benchmark of version {}", measure::SCHEMA);
-    let columns = ["tracer", SPEED, "× C89", "lanes in use"];
+    let columns = ["tracer", "samples per pixel", SPEED, "× C89", "lanes in use"];
     let table = |scene: &Value| {
         let rows = items(&scene["rows"]);
         let row = |row: &Value| match row["skipped"].as_str() {
             Some(reason) => vec![html! { (text(&row["name"])) }, html! { "not measured: " (reason) }],
             None => vec![
                 html! { (text(&row["name"])) },
+                shown(row["samples_per_pixel"].as_u64(), |samples| samples.to_string()),
                 speed(row, rows),
                 shown(row["ratio_to_baseline"].as_f64(), |ratio| format!("{ratio:.2}")),
                 shown(row["lanes_in_use"].as_f64(), percent),
@@ -341,7 +342,7 @@ mod tests {
     #[test]
     fn benchmark_table_rows() {
         let speeds = |median: f64| json!({"median": median, "min": 0.5 * median, "max": 2.0 * median});
-        let row = |name: &str, speed: Value, skipped: Option<&str>| json!({"name": name, "paths_per_second": speed, "skipped": skipped, "lanes_in_use": 0.875, "ratio_to_baseline": 8.0});
+        let row = |name: &str, speed: Value, skipped: Option<&str>| json!({"name": name, "paths_per_second": speed, "skipped": skipped, "lanes_in_use": 0.875, "samples_per_pixel": 14, "ratio_to_baseline": 8.0});
         let bench = |schema: u32| {
             let rows = [
                 row("C89, cc -O2, 1 thread", speeds(5e6), None),
@@ -355,8 +356,8 @@ mod tests {
         assert_eq!(
             rows(&html),
             [
-                &["C89, cc -O2, 1 thread", "5.00 2.50–10.0", "8.00", "87.5 %"][..],
-                &["avx2, 8 lanes, 3 threads", "40.0 20.0–80.0", "8.00", "87.5 %"],
+                &["C89, cc -O2, 1 thread", "14", "5.00 2.50–10.0", "8.00", "87.5 %"][..],
+                &["avx2, 8 lanes, 3 threads", "14", "40.0 20.0–80.0", "8.00", "87.5 %"],
                 &["other GPU", "not measured: it has no memory"],
             ]
         );
