@@ -273,6 +273,8 @@ class Panel {
     this.inputs.forEach((show) => show());
     this.name((slider) => this.session?.value(slider) ?? slider.value);
     const isLive = this.session !== null;
+    // A second picture of the usual settings leaves while the settings are others.
+    this.root.classList.toggle("changed", Boolean(this.session?.isChanged));
     this.button.textContent = isLive ? "Stop" : "Run";
     this.button.setAttribute("aria-pressed", isLive);
     this.adjust.hidden = !isLive || this.inputs.length === 0;
@@ -314,6 +316,7 @@ class Panel {
     });
     this.back ??= this.root.appendChild(element("button", { type: "button", className: "live-back", textContent: "Back to the usual picture", onclick: () => this.unset() }));
     this.back.hidden = false;
+    this.root.classList.add("changed");
   }
 
   unset() {
@@ -321,6 +324,7 @@ class Panel {
     for (const [image, src, srcset] of this.usual) Object.assign(image, { src, srcset });
     this.usual = null;
     this.back.hidden = true;
+    this.root.classList.remove("changed");
     this.name((slider) => slider.value);
   }
 

@@ -13,11 +13,12 @@ use crate::uses::Uses;
 use crate::words::{numbered, typographic};
 use anyhow::{Context, Error, Result, bail, ensure};
 use maud::{Markup, PreEscaped, html};
+use std::str::FromStr;
 use weekender::excerpt::Excerpt;
 use weekender::stages::Stage;
 
 /// The directives and their arguments. More lines hold a caption, or what to quote.
-const KNOWN: &str = "figure ID, code, code without LANGUAGES: REASON, fold TITLE, unfold, mistakes STAGE, bounces STAGE, samples STAGE (these three also with crop LEFT TOP WIDTH HEIGHT), denoised STAGE SAMPLES, table NAME, chart NAME, diagram NAME, diagram NAME where WORD < WORD, timeline STAGE, glossary, references";
+const KNOWN: &str = "figure ID, figure ID crop LEFT TOP WIDTH HEIGHT, figure ID aim X Y Z DEGREES, code, code without LANGUAGES: REASON, fold TITLE, unfold, mistakes STAGE, bounces STAGE, samples STAGE (these three also with crop LEFT TOP WIDTH HEIGHT), denoised STAGE SAMPLES, table NAME, chart NAME, diagram NAME, diagram NAME where WORD < WORD, timeline STAGE, glossary, references";
 
 /// The HTML of a directive, given without its braces.
 pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) -> Result<Markup> {
@@ -30,10 +31,9 @@ pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) ->
         text => place.inside(site, text, uses).map(Some).map_err(|fault| Error::msg(fault.message)),
     };
     match words.as_slice() {
-        ["figure", id] => figure(id, caption()?, None, uses),
-        ["figure", id, "crop", part @ ..] => {
-            figure(id, caption()?, Some(numbers(part)?.map(f64::from)), uses)
-        }
+        ["figure", id] => figure(id, caption()?, Part::None, uses),
+        ["figure", id, "crop", part @ ..] => figure(id, caption()?, Part::Crop(numbers(part)?), uses),
+        ["figure", id, "aim", part @ ..] => figure(id, caption()?, Part::Aim(numbers(part)?), uses),
         ["code"] => code(site, place, more, ""),
         ["code", "without", ..] => {
             code(site, place, more, head.split_once("without ").map_or("", |(_, why)| why))
@@ -72,10 +72,19 @@ pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) ->
     }
 }
 
-/// Left, top, width and height in the stage's pixels.
-fn numbers(words: &[&str]) -> Result<[u32; 4]> {
-    let numbers: Result<Vec<u32>, _> = words.iter().map(|word| word.parse()).collect();
-    numbers.ok().and_then(|numbers| numbers.try_into().ok()).context("a crop is four whole numbers")
+fn numbers<T: FromStr>(words: &[&str]) -> Result<[T; 4]> {
+    let numbers: Result<Vec<T>, _> = words.iter().map(|word| word.parse()).collect();
+    numbers.ok().and_then(|numbers| numbers.try_into().ok()).context("give four numbers")
+}
+
+/// A second picture below a panel's.
+#[derive(Clone, Copy)]
+pub enum Part {
+    None,
+    /// A part, enlarged: left, top, width and height in the stage's pixels.
+    Crop([u32; 4]),
+    /// The stage seen from the same eye: a point to look at, and the field of view in degrees.
+    Aim([f64; 4]),
 }
 
 /// Pictures narrower than this are enlarged with every pixel a square. (A reduced picture must not be shown so: its edges
@@ -85,9 +94,9 @@ const FEW_PIXELS: u32 = 100;
 /// A panel's picture with the switch and the sliders that the script adds. `small` is for narrow windows; the panel is
 /// then the page's first.
 pub fn panel(
-    stage: &Stage,
+    stage: &'static Stage,
     label: Option<&str>,
-    crop: Option<[f64; 4]>,
+    part: Part,
     small: Option<&Picture>,
     uses: &mut Uses,
 ) -> Result<Markup> {
@@ -104,7 +113,9 @@ pub fn panel(
                 loading=[small.is_none().then_some("lazy")] fetchpriority=[small.map(|_| "high")]
                 srcset=[small.map(|small| format!("{}, {file} {width}w", small.candidate()))]
                 sizes=[small.map(|_| "(max-width: 40rem) 14rem, 70rem")]; }
-            @if let Some([x, y, w, h]) = crop {
+            @if let Part::Aim([x, y, z, vfov]) = part { (aimed(stage, [x, y, z], vfov, uses)) }
+            @if let Part::Crop(crop) = part {
+                @let [x, y, w, h] = crop.map(f64::from);
                 @let [wide, left, top] = [f64::from(width) / w, -x / w, -y / h].map(|share| 100.0 * share);
                 div .crop style=(format!("aspect-ratio: {w} / {h}")) {
                     img src=(file) width=(width) height=(height) alt="A part of the picture, enlarged" loading="lazy"
@@ -118,8 +129,17 @@ pub fn panel(
     })
 }
 
-/// `crop` is a part to show enlarged: left, top, width and height in the stage's pixels.
-fn figure(id: &str, caption: Option<Markup>, crop: Option<[f64; 4]>, uses: &mut Uses) -> Result<Markup> {
+/// The stage from the same eye, with a camera that looks at a point.
+fn aimed(stage: &'static Stage, [x, y, z]: [f64; 3], vfov: f64, uses: &mut Uses) -> Markup {
+    let mut picture = Picture::still(stage);
+    let camera = &mut picture.recipe.camera;
+    (camera.look_at.x, camera.look_at.y, camera.look_at.z, camera.vfov_degrees) = (x, y, z, vfov);
+    let shown = html! { div .aimed { (picture.img("seen with a camera that looks at it")) } };
+    uses.pictures.push(picture);
+    shown
+}
+
+fn figure(id: &str, caption: Option<Markup>, part: Part, uses: &mut Uses) -> Result<Markup> {
     let figure = Figure::find(id);
     let figure = figure
         .with_context(|| format!("there is no figure {id:?}; companion/assets/figures.toml has them"))?;
@@ -130,7 +150,7 @@ fn figure(id: &str, caption: Option<Markup>, crop: Option<[f64; 4]>, uses: &mut 
     let panels: Result<Vec<Markup>> = figure
         .panels
         .iter()
-        .map(|shown| panel(shown.stage(), is_wide.then_some(shown.label.as_str()), crop, None, uses))
+        .map(|shown| panel(shown.stage(), is_wide.then_some(shown.label.as_str()), part, None, uses))
         .collect();
     Ok(html! {
         figure .figure .wide[is_wide] id={ "figure-" (id) } {

@@ -126,7 +126,7 @@ fn document(site: &Site, content: &Markup) -> Result<Markup, Fault> {
 /// `live` pictures can run, and `drawn` diagrams be dragged.
 fn cover(live: usize, drawn: usize, is_quick: bool, uses: &mut Uses) -> Result<Markup> {
     let stage = cover_stage();
-    let panel = directive::panel(stage, None, None, Some(&Picture::small(stage)), uses)?;
+    let panel = directive::panel(stage, None, directive::Part::None, Some(&Picture::small(stage)), uses)?;
     Ok(html! {
         header .cover {
             p .kicker { "Weekender, the companion" }

@@ -132,6 +132,8 @@ fn directives_render() {
         cropped.contains("aspect-ratio: 3 / 4\"") && cropped.contains("A <em>caption</em>."),
         "{cropped}"
     );
+    let aimed = alone(&site, "{{figure glass-rules aim -1 0 -1 50}}");
+    assert_eq!(aimed.matches("<div class=\"aimed\"><img").count(), 3, "{aimed}");
     let diagram = alone(&site, "{{diagram lanes}}");
     assert!(diagram.contains("aria-label=\"Diagram\"><svg") && diagram.contains("<figcaption>"), "{diagram}");
 }
@@ -193,6 +195,7 @@ fn errors_in_texts_name_the_line() {
     let site = Site::read(&Library::of_checkout()).unwrap();
     for (text, message) in [
         ("{{figure spehre}}", "there is no figure \"spehre\""),
+        ("{{figure sky aim 1 2 3}}", "give four numbers"),
         ("{{code\nsrc/lib.rs: mod nothing\n}}", "no line begins with \"mod nothing\""),
         ("{{code\nsrc/nothing.rs: fn a\n}}", "src/nothing.rs"),
         ("{{mistakes sky\nno-such\n}}", "can have no mistake \"no-such\""),
