@@ -46,7 +46,7 @@ const placed = async (element) => {
 for (const figure of await page.locator("figure:is(.diagram, .timeline)").all()) {
   await placed(figure);
 }
-await page.locator("figure:has(.reading)").nth(10).waitFor({ state: "attached" });
+await page.locator("figure:has(.reading)").nth(28).waitFor({ state: "attached" });
 
 // Each handle is dragged and moved by keys, each slider is set: the drawing or its reading must change.
 for (const figure of await page.locator("figure:has(.reading)").all()) {

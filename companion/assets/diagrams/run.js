@@ -119,11 +119,16 @@ function startTimeline(figure) {
   show();
 }
 
-if (typeof document !== "undefined") {
-  // One after the other, so that the page answers between them.
-  for (const figure of document.querySelectorAll(".timeline")) startTimeline(figure);
-  for (const figure of document.querySelectorAll(".diagram")) {
+// One after the other; the page answers between them.
+async function startAll() {
+  let since = performance.now();
+  for (const figure of document.querySelectorAll(":is(.diagram, .timeline)")) {
     const diagram = diagrams[figure.id.replace("diagram-", "")];
     if (diagram) start(figure, diagram);
+    else if (figure.matches(".timeline")) startTimeline(figure);
+    if (performance.now() - since < 10) continue;
+    await new Promise((passed) => setTimeout(passed));
+    since = performance.now();
   }
 }
+if (typeof document !== "undefined") startAll();
