@@ -9,6 +9,7 @@
 mod book;
 
 use book::Book;
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use weekender::comparison::check::{Mine, judge};
 use weekender::stages::Stage;
@@ -174,9 +175,9 @@ fn planted(stage: &'static str, mistake: &'static str, samples: u32, seed: u64) 
 /// counts.
 fn found(mine: &Mine, stage: Option<&str>, planted: &str) -> anyhow::Result<(String, f64)> {
     let begin = Instant::now();
-    let finding = judge(mine, stage.map(Stage::find).transpose()?, |_| {})?;
+    let finding = judge(mine, stage.map(Stage::find).transpose()?, &AtomicBool::new(false), |_| {})?;
     let seconds = begin.elapsed().as_secs_f64();
-    if finding.alike.iter().any(|alike| alike.id == planted) {
+    if finding.alike.iter().filter_map(|alike| alike.named()).any(|alike| alike.id == planted) {
         return Ok((planted.to_owned(), seconds));
     }
     let found = match finding.named() {

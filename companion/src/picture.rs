@@ -121,7 +121,7 @@ impl Picture {
         }
         let [width, height] = [self.recipe.settings.width, self.recipe.settings.height];
         let bytes = match self.tracer {
-            Tracer::Plain(mistake) => mistaken(self.recipe.clone(), mistake)?,
+            Tracer::Plain(mistake) => mistaken(self.stage, self.recipe.clone(), mistake)?,
             Tracer::Fast => sampled(&self.recipe, false)?,
             // A few samples are to be seen as they are.
             Tracer::Denoised => sampled(&self.recipe, self.recipe.samples_per_pixel >= 16)?,
@@ -148,17 +148,17 @@ impl Picture {
     }
 }
 
-fn mistaken(recipe: Recipe, mistake: Option<&'static Mistake>) -> Result<Vec<u8>> {
+fn mistaken(stage: &'static Stage, recipe: Recipe, mistake: Option<&'static Mistake>) -> Result<Vec<u8>> {
     let (size, samples) = ([recipe.settings.width, recipe.settings.height], recipe.samples_per_pixel);
-    let mut studio = Studio::new(recipe, size)?;
-    let recipe = studio.recipe().clone();
+    let stop = AtomicBool::new(false);
+    let right = Hypothesis::right(stage, recipe, size);
     let picture = match mistake {
         Some(mistake) => {
-            mistake.pictures(&recipe).into_iter().next().context("a mistake without a picture")?
+            mistake.pictures(&right).into_iter().next().context("a mistake without a picture")?
         }
-        None => Hypothesis::right(&recipe),
+        None => right,
     };
-    let linear = studio.render(&picture, samples)?;
+    let linear = Studio::new(&stop)?.picture(&picture, samples)?;
     let mut bytes = picture.written.bytes_of(&linear, size).concat();
     if picture.written.wraps {
         let values = bytes.iter_mut().zip(linear.as_flattened());

@@ -193,7 +193,7 @@ impl<R: Real> PreparedScene<R> {
             hierarchy_source,
             records,
             scene_index: listed,
-            camera: CameraTable::new(job, groups.origin),
+            camera: camera_of(job, groups.origin),
             sky_middle: rounded((bottom + top) / 2.0),
             sky_slope: rounded((top - bottom) / 2.0),
             block_limit: block_limit(scene.sky.bottom.max(scene.sky.top).max_element()),
@@ -230,7 +230,7 @@ impl<R: Real> PreparedScene<R> {
             return false;
         }
         let settings = *job.settings();
-        self.camera = CameraTable::new(job, groups.origin);
+        self.camera = camera_of(job, groups.origin);
         self.settings = settings;
         self.hierarchy_source = HierarchySource::Kept;
         self.set_view(job, groups);
@@ -277,6 +277,11 @@ impl<R: Real> PreparedScene<R> {
 }
 
 /// Describes a sphere relative to its anchor.
+fn camera_of<R: Real>(job: &RenderJob, origin: DVec3) -> CameraTable<R> {
+    let size = [job.settings().width, job.settings().height];
+    CameraTable::new(job.camera(), job.viewport(), size, origin)
+}
+
 fn anchored_sphere<R: Real>(scene: &Scene, anchored: &Anchored, origin: DVec3) -> AnchoredSphere<R> {
     let sphere = &scene.spheres[anchored.index as usize];
     let towards = (anchored.near - sphere.center).try_normalize().unwrap_or(DVec3::Y);

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 use std::process::{Command, Stdio};
-use weekender::job::render::RenderJob;
+use weekender::job::render::{RenderJob, Viewport};
 use weekender::kernel::sampling::{SampleBlock, pcg4d};
 use weekender::kernel::{CameraTable, words_of};
 use weekender::render_gpu::Exported;
@@ -106,10 +106,10 @@ fn cameras_are_those_of_the_program() {
     let tables: Vec<Value> = tables.collect();
     let input = json!({ "data": data_of(&[]), "tables": tables });
     let Some(told) = told_by_node(&input) else { return };
-    for (index, (camera, [width, height], origin)) in cameras.iter().enumerate() {
-        let table = CameraTable::<f32>::new(camera, *width, *height, *origin);
+    for (index, (camera, size, origin)) in cameras.iter().enumerate() {
+        let table = CameraTable::<f32>::new(camera, &Viewport::WHOLE, *size, *origin);
         let expected = STANDARD.encode(bytemuck::cast_slice::<u32, u8>(&words_of(&[table])));
-        assert_eq!(told["tables"][index], expected, "{camera:?} {width}x{height} from {origin}");
+        assert_eq!(told["tables"][index], expected, "{camera:?} {size:?} from {origin}");
     }
 }
 

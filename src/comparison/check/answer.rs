@@ -113,7 +113,8 @@ impl Hypothesis {
     fn cause(&self) -> Option<Cause> {
         let words: Vec<&str> = self.numbers.iter().map(|number| number.words.as_str()).collect();
         if let Some(first) = self.numbers.first() {
-            let codes = self.numbers.iter().map(|number| format!("`{}`", number.code)).collect::<BTreeSet<_>>();
+            let codes =
+                self.numbers.iter().map(|number| format!("`{}`", number.code)).collect::<BTreeSet<_>>();
             let codes: Vec<String> = codes.into_iter().collect();
             let remedy = format!("look at {}", codes.join(" and "));
             return Some(Cause { title: words.join("; "), remedy, section: first.section });
@@ -186,7 +187,8 @@ impl Finding {
                 let damage = answer.damages.remove(0);
                 answer.kind = AnswerKind::Mistake;
                 answer.title = capitalised(&damage.title);
-                answer.explanation = "The picture itself is right: it differs from ours by noise only".to_owned();
+                answer.explanation =
+                    "The picture itself is right: it differs from ours by noise only".to_owned();
                 answer.remedy = Some(capitalised(damage.remedy));
                 answer.section = Section::find("2.2");
             }
@@ -259,7 +261,10 @@ impl Finding {
         let found = self.found.iter();
         evidence.extend(found.clone().filter_map(|found| found.hypothesis.note.as_deref()).map(capitalised));
         for number in found.clone().flat_map(|found| &found.hypothesis.numbers) {
-            evidence.push(format!("The number is {:.3}, with a deviation of {:.3}", number.value, number.deviation));
+            evidence.push(format!(
+                "The number is {:.3}, with a deviation of {:.3}",
+                number.value, number.deviation
+            ));
         }
         for cause in self.alike.iter().filter_map(Hypothesis::cause) {
             evidence.push(format!("Or {}: {}", cause.title, cause.remedy));
@@ -321,7 +326,11 @@ impl Hypothesis {
     /// The middle of the pixels that show a sphere.
     fn middle_of(&self, sphere: &Sphere) -> Option<[u32; 2]> {
         let [width, _] = self.size();
-        let shown = self.spheres().into_iter().enumerate().filter(|(_, it)| it.is_some_and(|it| it.center == sphere.center));
+        let shown = self
+            .spheres()
+            .into_iter()
+            .enumerate()
+            .filter(|(_, it)| it.is_some_and(|it| it.center == sphere.center));
         let (mut sum, mut count) = ([0, 0], 0);
         for (pixel, _) in shown {
             (sum[0] += pixel as u32 % width, sum[1] += pixel as u32 / width, count += 1);

@@ -75,7 +75,8 @@ impl Fit {
                 continue;
             }
             for channel in 0..3 {
-                sums[3 * (y * (width / PLACE) + x) + channel] += value[channel] + 0.0 * self.left[pixel][channel];
+                sums[3 * (y * (width / PLACE) + x) + channel] +=
+                    value[channel] + 0.0 * self.left[pixel][channel];
             }
         }
         sums
@@ -165,8 +166,8 @@ fn samples(seen: &Seen, mean: &[[f64; 3]], steps: &[[f64; 3]], rendered: &Render
                 }
                 let squares = [pixel, other].map(|at| steps[at][channel].powi(2));
                 let of = |of: &[[f64; 3]]| of[pixel][channel] / squares[0] + of[other][channel] / squares[1];
-                let [left, right] =
-                    [pixel, other].map(|at| (seen.values[at][channel] - mean[at][channel]) / steps[at][channel]);
+                let [left, right] = [pixel, other]
+                    .map(|at| (seen.values[at][channel] - mean[at][channel]) / steps[at][channel]);
                 pairs.push([(left - right).powi(2), of(&rendered.variance), of(&rendered.error) + rounding]);
             }
         }

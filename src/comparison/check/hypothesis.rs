@@ -158,9 +158,15 @@ impl Rendered {
         Rendered { halves, variance, error }
     }
 
-    fn map(&self, change: impl Fn(&[[f64; 3]], &dyn Fn(&Rendered) -> &[[f64; 3]], f64) -> Vec<[f64; 3]>) -> Rendered {
+    fn map(
+        &self,
+        change: impl Fn(&[[f64; 3]], &dyn Fn(&Rendered) -> &[[f64; 3]], f64) -> Vec<[f64; 3]>,
+    ) -> Rendered {
         Rendered {
-            halves: [change(&self.halves[0], &|it| &it.halves[0], 1.0), change(&self.halves[1], &|it| &it.halves[1], 1.0)],
+            halves: [
+                change(&self.halves[0], &|it| &it.halves[0], 1.0),
+                change(&self.halves[1], &|it| &it.halves[1], 1.0),
+            ],
             variance: change(&self.variance, &|it| &it.variance, 2.0),
             error: change(&self.error, &|it| &it.error, 2.0),
         }
@@ -207,6 +213,15 @@ impl<'a> Studio<'a> {
         Ok(Studio { fast: CpuRenderer::new(CpuOptions::default())?, stop })
     }
 
+    /// Renders a hypothesis: linear RGB in the layout of its file.
+    ///
+    /// # Errors
+    /// If it was told to stop.
+    pub fn picture(&mut self, hypothesis: &Hypothesis, samples: u64) -> Result<Vec<[f64; 3]>> {
+        let mean = self.render(hypothesis, 1, samples, None)?.mean();
+        Ok(hypothesis.written.laid_out(&mean, hypothesis.size()))
+    }
+
     /// Renders a hypothesis, smaller by a factor, within the pixels of `mask`. Pictures larger than [`PIXELS`] get the same
     /// number of paths.
     ///
@@ -239,7 +254,8 @@ impl<'a> Studio<'a> {
 
     fn plain(&self, tracer: &Tracer, samples: u32, mask: Option<&[bool]>) -> Rendered {
         let half = samples.div_ceil(2);
-        let [first, second] = [0, samples - half].map(|from| tracer.moments(from..from + half, mask, self.stop));
+        let [first, second] =
+            [0, samples - half].map(|from| tracer.moments(from..from + half, mask, self.stop));
         let mean = |half: &[[[f64; 3]; 2]]| half.iter().map(|[mean, _]| *mean).collect();
         let variance = |at: usize| {
             [0, 1, 2].map(|c| {
@@ -305,7 +321,10 @@ fn smoothed(variance: &[[f64; 3]], width: usize) -> Vec<[f64; 3]> {
     let at = |pixel: usize| {
         let (mut sum, mut count) = ([0.0; 3], 0.0);
         for y in near(pixel / width, height) {
-            for near in near(pixel % width, width).map(|x| &variance[y * width + x]).filter(|near| near[0].is_finite()) {
+            for near in near(pixel % width, width)
+                .map(|x| &variance[y * width + x])
+                .filter(|near| near[0].is_finite())
+            {
                 (0..3).for_each(|c| sum[c] += near[c]);
                 count += 1.0;
             }

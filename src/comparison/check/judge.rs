@@ -280,7 +280,8 @@ impl Search<'_> {
             (self.say)(format!("comparing: {named}"));
             compared.push(self.compared(&hypothesis)?);
         }
-        let enough = |compared: &[Compared]| compared.iter().filter(|it| it.fit.is_enough()).cloned().collect();
+        let enough =
+            |compared: &[Compared]| compared.iter().filter(|it| it.fit.is_enough()).cloned().collect();
         if let Some(finding) = self.explained(&right, enough(&compared)) {
             return Ok(finding);
         }
@@ -370,7 +371,8 @@ impl Search<'_> {
     }
 
     fn rendered(&mut self, of: &Hypothesis) -> Result<Rendered> {
-        let is_same = |(known, _): &&(Hypothesis, Rendered)| known.stage.id == of.stage.id && known.is_traced_as(of);
+        let is_same =
+            |(known, _): &&(Hypothesis, Rendered)| known.stage.id == of.stage.id && known.is_traced_as(of);
         if let Some((_, rendered)) = self.known.iter().find(is_same) {
             return Ok(rendered.clone());
         }
@@ -390,7 +392,8 @@ impl Search<'_> {
         // The plain tracer is slow: it renders only what its steps change.
         let factor = factor(of.size());
         fast.plain();
-        let [own, book] = [of, &fast].map(|it| self.studio.render(it, factor, 4 * SMALL[1], None).map(|it| it.halves));
+        let [own, book] =
+            [of, &fast].map(|it| self.studio.render(it, factor, 4 * SMALL[1], None).map(|it| it.halves));
         let (own, book) = (own?, book?);
         let size = of.size().map(|side| side as usize);
         let is_changed = |pixel: usize| (0..2).any(|half| own[half][pixel] != book[half][pixel]);
@@ -410,7 +413,8 @@ impl Search<'_> {
             return Ok(best);
         }
         for mistake in applying_to(&hypothesis.recipe).filter(|it| it.is_right) {
-            for other in mistake.pictures(hypothesis).iter().filter(|it| is_written_otherwise(it, hypothesis)) {
+            for other in mistake.pictures(hypothesis).iter().filter(|it| is_written_otherwise(it, hypothesis))
+            {
                 if other.written.curve != hypothesis.written.curve || best.fit.is_enough() {
                     continue;
                 }
@@ -426,20 +430,24 @@ impl Search<'_> {
 
     /// Right pictures of these stages, and pictures that are only written otherwise, the most similar first.
     fn ranked(&mut self, stages: &[&'static Stage]) -> Result<Vec<(f64, Hypothesis)>> {
-            (self.say)("comparing with all sections and editions".to_owned());
+        (self.say)("comparing with all sections and editions".to_owned());
         let size = [self.mine.width, self.mine.height];
         let factor = factor(size);
         let mut known: Vec<(Written, Vec<[f64; 3]>)> = Vec::new();
         let mut ranked = Vec::new();
         for stage in stages {
             let right = Hypothesis::right(stage, common(stage), size);
-            let editions = applying_to(&right.recipe).filter(|it| it.is_right).flat_map(|it| it.pictures(&right));
+            let editions =
+                applying_to(&right.recipe).filter(|it| it.is_right).flat_map(|it| it.pictures(&right));
             let editions: Vec<Hypothesis> = editions.filter(|it| !it.is_traced_as(&right)).collect();
             for base in [right].into_iter().chain(editions) {
-                let mut tiny = |of: &Hypothesis| small(&mut self.studio, of, factor, SMALL[usize::from(of.steps.is_some())]);
+                let mut tiny = |of: &Hypothesis| {
+                    small(&mut self.studio, of, factor, SMALL[usize::from(of.steps.is_some())])
+                };
                 let others = applying_to(&base.recipe).flat_map(|it| it.pictures(&base));
                 let is_other = |it: &Hypothesis| {
-                    it.written.levels == base.written.levels && it.added.is_none()
+                    it.written.levels == base.written.levels
+                        && it.added.is_none()
                         && (it.is_traced_as(&base) || it.written.order.exchanges_sides())
                 };
                 let others: Vec<Hypothesis> = others.filter(is_other).collect();
@@ -450,7 +458,8 @@ impl Search<'_> {
                 };
                 for hypothesis in [base].into_iter().chain(others) {
                     let written = hypothesis.written;
-                    let of = if written.order.exchanges_sides() { exchanged.as_ref() } else { Some(&rendered) };
+                    let of =
+                        if written.order.exchanges_sides() { exchanged.as_ref() } else { Some(&rendered) };
                     let Some(rendered) = of else { continue };
                     let place = known.iter().position(|(known, _)| *known == written).unwrap_or_else(|| {
                         let seen = self.seen(&written, None);
@@ -459,10 +468,16 @@ impl Search<'_> {
                     });
                     // What holds the same values is not written otherwise.
                     let is_same = |(other, values): &(Written, Vec<[f64; 3]>)| {
-                        *other != written && other.curve == written.curve && !written.wraps && is_equal(values, &known[place].1)
+                        *other != written
+                            && other.curve == written.curve
+                            && !written.wraps
+                            && is_equal(values, &known[place].1)
                     };
                     if hypothesis.is_right() || !known[..place].iter().any(is_same) {
-                        ranked.push((rough(&known[place].1, rendered, written.linear(255, 0, 1)[0]), hypothesis));
+                        ranked.push((
+                            rough(&known[place].1, rendered, written.linear(255, 0, 1)[0]),
+                            hypothesis,
+                        ));
                     }
                 }
             }
@@ -533,7 +548,8 @@ fn rough(seen: &[[f64; 3]], rendered: &Rendered, most: f64) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     let halves = rendered.halves.each_ref().map(|half| half.as_flattened());
     for (index, value) in seen.as_flattened().iter().enumerate() {
-        let square = (value - halves[0][index].min(most)) * (value - halves[1][index].min(most)) / (4.0 * value.max(0.02));
+        let square = (value - halves[0][index].min(most)) * (value - halves[1][index].min(most))
+            / (4.0 * value.max(0.02));
         if square.is_finite() {
             sum += square;
             count += 1.0;
@@ -566,7 +582,9 @@ pub fn with_added(seen: &Seen, rendered: Rendered, added: Added) -> (Rendered, O
         Added::Carry => 0.0,
     });
     let note = match added {
-        Added::Gain => format!("your picture is {:.3} times as bright as ours, in linear values", 1.0 + times),
+        Added::Gain => {
+            format!("your picture is {:.3} times as bright as ours, in linear values", 1.0 + times)
+        }
         Added::Carry => format!("each pixel holds about 1/{:.0} of the one before", 1.0 / times),
     };
     (rendered.plus(times, from), Some(note))

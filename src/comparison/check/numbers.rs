@@ -90,16 +90,18 @@ impl What {
 
     /// Groups of numbers that are typed together.
     fn groups(all: &[What]) -> Vec<Vec<What>> {
-        let of = |is_in: &dyn Fn(&What) -> bool| all.iter().copied().filter(|what| is_in(what)).collect::<Vec<_>>();
+        let of = |is_in: &dyn Fn(&What) -> bool| {
+            all.iter().copied().filter(|what| is_in(what)).collect::<Vec<_>>()
+        };
         let mut groups: Vec<Vec<What>> = Vec::new();
         for what in all {
             groups.push(match *what {
                 What::Albedo(material, 0) => of(&|it| matches!(it, What::Albedo(m, _) if *m == material)),
                 What::Sky(end, 0) => of(&|it| matches!(it, What::Sky(e, _) if *e == end)),
                 What::Center(sphere, 0) => of(&|it| matches!(it, What::Center(s, _) if *s == sphere)),
-                What::Radius(sphere) => of(
-                    &|it| matches!(it, What::Center(s, _) | What::Radius(s) if *s == sphere),
-                ),
+                What::Radius(sphere) => {
+                    of(&|it| matches!(it, What::Center(s, _) | What::Radius(s) if *s == sphere))
+                }
                 What::Eye(0) => of(&|it| matches!(it, What::Eye(_))),
                 What::Scale(0) => of(&|it| matches!(it, What::Scale(_) | What::Shift(_))),
                 _ => continue,
@@ -151,14 +153,18 @@ impl What {
                     What::Sky(0, channel) => &mut scene.sky.bottom[channel],
                     What::Sky(_, channel) => &mut scene.sky.top[channel],
                     What::Albedo(material, channel) => match &mut scene.materials[material].material {
-                        Material::Lambertian { albedo } | Material::Metal { albedo, .. } => &mut albedo[channel],
+                        Material::Lambertian { albedo } | Material::Metal { albedo, .. } => {
+                            &mut albedo[channel]
+                        }
                         Material::Dielectric { refraction_index } => refraction_index,
                     },
-                    What::Fuzz(material) | What::Index(material) => match &mut scene.materials[material].material {
-                        Material::Metal { fuzz, .. } => fuzz,
-                        Material::Dielectric { refraction_index } => refraction_index,
-                        Material::Lambertian { albedo } => &mut albedo.x,
-                    },
+                    What::Fuzz(material) | What::Index(material) => {
+                        match &mut scene.materials[material].material {
+                            Material::Metal { fuzz, .. } => fuzz,
+                            Material::Dielectric { refraction_index } => refraction_index,
+                            Material::Lambertian { albedo } => &mut albedo.x,
+                        }
+                    }
                     _ => return 0.0,
                 }
             }
@@ -220,7 +226,11 @@ impl What {
                 format!("the {} of the sky's {} colour is {is}", colour(c), ["lower", "upper"][end])
             }
             What::Scale(a) => {
-                format!("the viewport is {} times as {} as it should be", plain(value / home), ["wide", "high"][a])
+                format!(
+                    "the viewport is {} times as {} as it should be",
+                    plain(value / home),
+                    ["wide", "high"][a]
+                )
             }
             What::Shift(a) => {
                 let pixels = (home - value) * f64::from(book.size()[a]);
@@ -237,18 +247,28 @@ impl What {
         let is_movable = matches!(book.stage.chapter(), "12" | "13" | "14");
         let of_material = |index: usize| match scene.materials[index].material {
             Material::Lambertian { albedo } => format!("lambertian({})", vector("color", albedo)),
-            Material::Metal { albedo, fuzz } => format!("metal({}, {})", vector("color", albedo), plain(fuzz)),
+            Material::Metal { albedo, fuzz } => {
+                format!("metal({}, {})", vector("color", albedo), plain(fuzz))
+            }
             Material::Dielectric { refraction_index } => format!("dielectric({refraction_index:.2})"),
         };
         match self {
-            What::Eye(_) if is_movable => ("12.2", format!("lookfrom = {}", vector("point3", camera.look_from))),
+            What::Eye(_) if is_movable => {
+                ("12.2", format!("lookfrom = {}", vector("point3", camera.look_from)))
+            }
             What::Eye(_) => ("4.2", format!("camera_center = {}", vector("point3", camera.look_from))),
-            What::Target(_) if is_movable => ("12.2", format!("lookat = {}", vector("point3", camera.look_at))),
+            What::Target(_) if is_movable => {
+                ("12.2", format!("lookat = {}", vector("point3", camera.look_at)))
+            }
             What::Target(_) => ("4.2", "camera_center - vec3(0, 0, focal_length)".to_owned()),
             What::FieldOfView if is_movable => ("12.1", format!("vfov = {}", plain(camera.vfov_degrees))),
             What::FieldOfView => ("4.2", "viewport_height = 2.0".to_owned()),
-            What::DefocusAngle => ("13.2", format!("defocus_angle = {}", plain(camera.defocus_angle_degrees))),
-            What::FocusDistance => ("13.2", format!("focus_dist = {}", plain(camera.effective_focus_distance()))),
+            What::DefocusAngle => {
+                ("13.2", format!("defocus_angle = {}", plain(camera.defocus_angle_degrees)))
+            }
+            What::FocusDistance => {
+                ("13.2", format!("focus_dist = {}", plain(camera.effective_focus_distance())))
+            }
             What::Center(sphere, _) | What::Radius(sphere) => {
                 let sphere = &scene.spheres[sphere];
                 (section, format!("sphere({}, {}", vector("point3", sphere.center), plain(sphere.radius)))
@@ -263,9 +283,10 @@ impl What {
                 ("4.2", "viewport_width = viewport_height * (double(image_width) / image_height)".to_owned())
             }
             What::Scale(_) => ("4.2", "pixel_delta_v = viewport_v / image_height".to_owned()),
-            What::Shift(_) => {
-                ("4.2", "pixel00_loc = viewport_upper_left + 0.5 * (pixel_delta_u + pixel_delta_v)".to_owned())
-            }
+            What::Shift(_) => (
+                "4.2",
+                "pixel00_loc = viewport_upper_left + 0.5 * (pixel_delta_u + pixel_delta_v)".to_owned(),
+            ),
         }
     }
 
@@ -274,7 +295,15 @@ impl What {
         let unit = 10.0_f64.powf((2.0 * deviation).max(1e-3).log10().floor());
         let value = (value / unit).round() * unit;
         let (section, code) = self.place(book);
-        Number { what: self, value, deviation, right: self.of(book), words: self.words(value, book), section, code }
+        Number {
+            what: self,
+            value,
+            deviation,
+            right: self.of(book),
+            words: self.words(value, book),
+            section,
+            code,
+        }
     }
 
     /// The sphere that the number belongs to.
@@ -373,12 +402,14 @@ pub fn candidates(screen: &mut Screen) -> Result<[Vec<(Vec<What>, Hypothesis)>; 
         derivatives.iter().map(|a| derivatives.iter().map(|b| dot(a, b)).collect()).collect();
     // The share of what is left that one step explains.
     let gain = |group: &[What]| {
-        let places: Vec<usize> = group.iter().filter_map(|what| all.iter().position(|it| it == what)).collect();
+        let places: Vec<usize> =
+            group.iter().filter_map(|what| all.iter().position(|it| it == what)).collect();
         if places.iter().any(|i| matrix[*i][*i] <= 0.0) {
             return 0.0;
         }
         let right: Vec<f64> = places.iter().map(|i| along[*i]).collect();
-        let part: Vec<Vec<f64>> = places.iter().map(|i| places.iter().map(|j| matrix[*i][*j]).collect()).collect();
+        let part: Vec<Vec<f64>> =
+            places.iter().map(|i| places.iter().map(|j| matrix[*i][*j]).collect()).collect();
         let found = solved(&part, &right);
         found.map_or(0.0, |(step, _)| step.iter().zip(&right).map(|(a, b)| a * b).sum::<f64>() / square)
     };
@@ -395,7 +426,9 @@ pub fn candidates(screen: &mut Screen) -> Result<[Vec<(Vec<What>, Hypothesis)>; 
         groups.truncate(TRIED[kind]);
         let mut solutions = Vec::new();
         for (_, group) in groups {
-            if let Some((quality, solution)) = solve(screen, &base, &group)?.filter(|(it, _)| *it < MOST * start) {
+            if let Some((quality, solution)) =
+                solve(screen, &base, &group)?.filter(|(it, _)| *it < MOST * start)
+            {
                 solutions.push((quality, group, solution));
             }
         }
@@ -494,7 +527,12 @@ pub fn finished(
         let rest = fit.in_blocks(seen, &fit.left);
         let noise = fit.in_blocks(seen, &fit.variance);
         let dot = |a: &[f64], b: &[f64]| {
-            a.iter().zip(b).zip(&noise).map(|((a, b), noise)| a * b / noise).filter(|x| x.is_finite()).sum::<f64>()
+            a.iter()
+                .zip(b)
+                .zip(&noise)
+                .map(|((a, b), noise)| a * b / noise)
+                .filter(|x| x.is_finite())
+                .sum::<f64>()
         };
         let matrix: Vec<Vec<f64>> =
             derivatives.iter().map(|a| derivatives.iter().map(|b| dot(a, b)).collect()).collect();
@@ -537,7 +575,8 @@ pub fn finished(
         if fit.is_enough() {
             let deviations: Vec<f64> = found.numbers.iter().map(|number| number.deviation).collect();
             found = at;
-            found.numbers = group.iter().zip(deviations).map(|(what, d)| what.number(what.of(&found), d, base)).collect();
+            found.numbers =
+                group.iter().zip(deviations).map(|(what, d)| what.number(what.of(&found), d, base)).collect();
             return Ok((found, rendered, fit));
         }
     }

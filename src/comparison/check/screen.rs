@@ -65,7 +65,8 @@ impl<'s, 'a> Screen<'s, 'a> {
 
     /// The difference of a hypothesis to the base; `half` is one of its halves, with independent noise.
     fn difference(&mut self, of: &Hypothesis, half: Option<usize>) -> Result<Vec<[f64; 3]>> {
-        let is_plain = of.steps.is_some() && !(of.steps.is_some() == self.base.steps.is_some() && of.rows.len() == self.base.rows.len());
+        let is_plain = of.steps.is_some()
+            && !(of.steps.is_some() == self.base.steps.is_some() && of.rows.len() == self.base.rows.len());
         let (mut base, mut own) = (self.base.clone(), of.clone());
         if is_plain {
             base.plain();
@@ -87,7 +88,8 @@ impl<'s, 'a> Screen<'s, 'a> {
     /// What is left of the reader's picture, 0 where it is not known.
     pub fn rest(&mut self, of: &Hypothesis, half: Option<usize>) -> Result<Vec<f64>> {
         let difference = self.difference(of, half)?;
-        let all = self.values.as_flattened().iter().zip(self.mean.as_flattened()).zip(difference.as_flattened());
+        let all =
+            self.values.as_flattened().iter().zip(self.mean.as_flattened()).zip(difference.as_flattened());
         let rest = all.map(|((value, mean), more)| value - (mean + more).min(self.most));
         Ok(rest.map(|x| if x.is_finite() { x } else { 0.0 }).collect())
     }

@@ -214,7 +214,12 @@ impl<'a> Tracer<'a> {
 
     /// Mean and variance of these samples of each pixel: linear RGB, row by row from the top; NaN where `mask` leaves a
     /// pixel out, and after `stop` is set.
-    pub fn moments(&self, samples: Range<u32>, mask: Option<&[bool]>, stop: &AtomicBool) -> Vec<[[f64; 3]; 2]> {
+    pub fn moments(
+        &self,
+        samples: Range<u32>,
+        mask: Option<&[bool]>,
+        stop: &AtomicBool,
+    ) -> Vec<[[f64; 3]; 2]> {
         let [width, height] = self.size;
         let count = f64::from(samples.end - samples.start);
         let pixel = |pixel: u32| {
@@ -337,7 +342,8 @@ impl<'a> Tracer<'a> {
         match material.look() {
             Look::Matte => Some((attenuation, self.diffuse(hit, random))),
             Look::Mirror { fuzz } => {
-                let reflected = (self.steps.before_fuzz)(self.reflect(ray.direction, hit.normal), ray.direction);
+                let reflected =
+                    (self.steps.before_fuzz)(self.reflect(ray.direction, hit.normal), ray.direction);
                 let direction = reflected + fuzz * (self.steps.fuzz)(random);
                 let is_absorbed = self.steps.absorbs_below && direction.dot(hit.normal) <= 0.0;
                 (!is_absorbed).then_some((attenuation, direction))

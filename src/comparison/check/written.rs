@@ -106,7 +106,8 @@ impl Seen {
             size.reverse();
         }
         let mut values = vec![[f64::NAN; 3]; mine.bytes.len()];
-        let levels: Vec<Levels> = (0..size[1] as usize).map(|row| Levels::new(written, row, size[1] as usize)).collect();
+        let levels: Vec<Levels> =
+            (0..size[1] as usize).map(|row| Levels::new(written, row, size[1] as usize)).collect();
         let bytes = mine.bytes.as_flattened();
         for (index, byte) in bytes.iter().take(3 * (mine.rows * mine.width) as usize).enumerate() {
             let Some(source) = written.order.source(index, file) else { continue };

@@ -4,6 +4,7 @@
 
 use crate::numerics::common::*;
 use glam::{DMat3, DVec3};
+use weekender::job::render::Viewport;
 use weekender::kernel::CameraTable;
 use weekender::render_cpu::camera::{lens_ray, pinhole_ray, screen};
 use weekender::render_cpu::lanes::{Lanes, Scalar, Wide};
@@ -132,7 +133,8 @@ fn pixel_of(camera: &Camera, width: u32, height: u32, d: DVec3) -> [f64; 2] {
 
 fn pixel_error<L: Lanes>(l: L, camera: &Camera) -> f64 {
     let (width, height) = (800, 450);
-    let table = CameraTable::<L::Real>::new(camera, width, height, DVec3::ZERO).map(Wide::splat);
+    let table =
+        CameraTable::<L::Real>::new(camera, &Viewport::WHOLE, [width, height], DVec3::ZERO).map(Wide::splat);
     let tau = (camera.defocus_angle_degrees.to_radians() / 2.0).tan();
     let pixel = 2.0 * (camera.vfov_degrees.to_radians() / 2.0).tan() / f64::from(height);
     let mut random = Random::new(8);

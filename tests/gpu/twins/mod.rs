@@ -304,7 +304,8 @@ fn camera_rays() {
     let job = job(DielectricLaws::Schlick);
     let settings = job.settings();
     let camera =
-        CameraTable::<f32>::new(job.camera(), settings.width, settings.height, DVec3::ZERO).map(Wide::splat);
+        CameraTable::<f32>::new(job.camera(), job.viewport(), [settings.width, settings.height], DVec3::ZERO)
+            .map(Wide::splat);
     let mut ulps = Ulps::default();
     for (input, output) in run(&gpu, DielectricLaws::Schlick, Probe::Camera, |i| {
         let [x, y, a, b] = uniform(i, 50);
