@@ -95,7 +95,7 @@ impl Picture {
             pixels,
             steps,
             limit,
-            notes: damages.chain(read.notes).chain(stated).chain(bias).collect(),
+            notes: damages.chain(read.notes.into_iter().map(advised)).chain(stated).chain(bias).collect(),
             film: None,
         })
     }
@@ -133,6 +133,11 @@ impl Picture {
         let value = self.pixels[pixel][channel];
         (self.limit.is_infinite() || !value.is_nan()).then_some(value)
     }
+}
+
+/// A note, with what the user can do about it.
+fn advised(note: String) -> String {
+    if note.contains("ICC") { format!("{note}; choose the transfer curve with --encoding") } else { note }
 }
 
 /// Bytes per pixel during a comparison, without films: both pictures, the difference, the halves' differences or the

@@ -272,7 +272,7 @@ impl Finding {
         if self.found.is_some() && !right.hypothesis.rows.is_empty() {
             evidence.push(format!("Not wrong: {}", right.hypothesis.harmless().join(", and ")));
         }
-        if !self.is_sure && right.hypothesis.is_right() {
+        if !self.is_sure && self.found.is_none() {
             evidence.extend(self.brightness(mine));
         }
         if let Some(samples) = self.samples().filter(|_| self.is_sure || self.is_too_little()) {
@@ -305,8 +305,9 @@ impl Finding {
     /// How bright the picture is, if that explains a part.
     fn brightness(&self, mine: &Mine) -> Option<String> {
         let seen = Seen::of(mine, &self.right.hypothesis.written, |_, _| 0.0);
-        let (rendered, note) = with_added(&seen, self.right.rendered.clone(), Added::Gain);
-        let fit = Fit::new(&seen, &self.right.hypothesis.written, &rendered);
+        let written = &self.right.hypothesis.written;
+        let (rendered, note) = with_added(&seen, written, self.right.rendered.clone(), Added::Gain);
+        let fit = Fit::new(&seen, written, &rendered);
         note.filter(|_| fit.excess < 0.8 * self.right.fit.excess).map(|note| capitalised(&note))
     }
 }

@@ -62,7 +62,7 @@ pub struct Fit {
 impl Fit {
     /// Whether the hypothesis alone explains the picture.
     pub fn is_enough(&self) -> bool {
-        self.score < SCORE_LIMIT && self.slopes == [0.0; 4]
+        self.score < limit_of(self.samples) && self.slopes == [0.0; 4]
     }
 
     /// The sums of a picture's pixels over blocks that are known.
@@ -85,11 +85,18 @@ impl Fit {
     pub fn new(seen: &Seen, written: &Written, rendered: &Rendered) -> Fit {
         let mean = rendered.mean();
         // Rare light in the dark would count too much if it were measured by the darkness.
-        let rare = |pixel: usize, channel: usize| 2.0 * (rendered.variance[pixel][channel] / 100.0).sqrt();
-        let steps = by_row(seen, written, |levels, pixel| {
-            [0, 1, 2].map(|channel| levels.step(mean[pixel][channel] + rare(pixel, channel)))
-        });
-        let samples = samples(seen, &mean, &steps, rendered);
+        let steps_of = |samples: f64| {
+            by_row(seen, written, |levels, pixel| {
+                let rare = rendered.variance[pixel].map(|variance| 2.0 * (variance / samples).sqrt());
+                [0, 1, 2].map(|channel| levels.step(mean[pixel][channel] + rare[channel]))
+            })
+        };
+        let mut steps = steps_of(100.0);
+        let mut samples = samples_of(seen, &mean, &steps, rendered);
+        if let Some(few) = samples.filter(|samples| *samples < 50.0) {
+            steps = steps_of(few);
+            samples = samples_of(seen, &mean, &steps, rendered);
+        }
         let of = |mean: &[[f64; 3]], times: f64| {
             by_row(seen, written, |levels, pixel| {
                 [0, 1, 2].map(|channel| {
@@ -114,7 +121,7 @@ impl Fit {
         let differing = worst.len() as f64 / (sums.blocks as f64).max(1.0);
         worst.sort_by(|(a, _), (b, _)| b.total_cmp(a));
         let score = scores.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        let slopes = if score < SCORE_LIMIT {
+        let slopes = if score < limit_of(samples) {
             let halves = [0, 1].map(|half| part(&of(&rendered.halves[half], 2.0), 0));
             slopes(seen, rendered, &steps, &halves, &variance)
         } else {
@@ -134,6 +141,11 @@ impl Fit {
     }
 }
 
+/// The limit of the score: with few samples, bytes are far from normal.
+fn limit_of(samples: Option<f64>) -> f64 {
+    SCORE_LIMIT * (1.0 + 5.0 / samples.unwrap_or(f64::INFINITY))
+}
+
 /// Maps each pixel, with the levels of its row.
 fn by_row<T: Send>(seen: &Seen, written: &Written, of: impl Fn(&Levels, usize) -> T + Sync) -> Vec<T> {
     let [width, height] = seen.size.map(|side| side as usize);
@@ -145,7 +157,7 @@ fn by_row<T: Send>(seen: &Seen, written: &Written, of: impl Fn(&Levels, usize) -
 }
 
 /// The reader's samples per pixel, from the differences of neighbours.
-fn samples(seen: &Seen, mean: &[[f64; 3]], steps: &[[f64; 3]], rendered: &Rendered) -> Option<f64> {
+fn samples_of(seen: &Seen, mean: &[[f64; 3]], steps: &[[f64; 3]], rendered: &Rendered) -> Option<f64> {
     /// Pairs with noise of less than this many squared bytes tell little, as do fewer pairs than this.
     const NOISE_LEAST: f64 = 1.0;
     const PAIRS_LEAST: usize = 200;

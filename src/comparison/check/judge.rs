@@ -24,7 +24,7 @@ const SMALL_WIDTH: u32 = 80;
 const SMALL: [u64; 2] = [16, 4];
 
 /// Hypotheses that are compared in full size: written otherwise, and with mistakes.
-const COMPARED: [usize; 2] = [6, 6];
+const COMPARED: [usize; 2] = [6, 8];
 
 /// Mean square of the blocks' means, in bytes, below which a mistake may only show in single pixels.
 const FINE_MOST: f64 = 4.0;
@@ -155,7 +155,7 @@ impl Search<'_> {
         let is_near = least < FOUND;
         let limit = if is_near { 1.5 * least + NEAR } else { least };
         let near = || ranked.iter().filter(|(misfit, _)| distance(*misfit) <= limit).map(|(_, it)| it);
-        let mut rights: Vec<Compared> = Vec::new();
+        let mut rights: Vec<(Compared, &Hypothesis)> = Vec::new();
         for hypothesis in near().filter(|it| it.is_right()).take(COMPARED[0]) {
             let stage = hypothesis.stage;
             (self.say)(format!("comparing with {} {}", stage.section, stage.title));
@@ -163,15 +163,21 @@ impl Search<'_> {
             if found.fit.is_enough() {
                 return Ok(self.finding(found, None, Vec::new()));
             }
-            rights.push(found);
+            rights.push((found, hypothesis));
         }
         // An edition must be nearer than the book.
         let key = |it: &Compared| it.fit.excess * if it.hypothesis.rows.is_empty() { 1.0 } else { 1.5 };
-        rights.sort_by(|a, b| key(a).total_cmp(&key(b)));
-        let mut others: Vec<Hypothesis> = rights.iter().map(|it| it.hypothesis.clone()).collect();
+        rights.sort_by(|(a, _), (b, _)| key(a).total_cmp(&key(b)));
+        // Mistakes are made on the way to the book's picture, and not on that of an exercise.
+        let mut others: Vec<Hypothesis> = Vec::new();
+        for (_, hypothesis) in &rights {
+            let book = ranked.iter().find(|(_, it)| it.stage.id == hypothesis.stage.id && it.rows.is_empty());
+            others.extend(book.filter(|_| !is_simple(hypothesis)).map(|(_, book)| book.clone()));
+            others.push((*hypothesis).clone());
+        }
         others.dedup_by(|a, b| a.stage.id == b.stage.id && a.is_traced_as(b));
         let right = match rights.into_iter().next() {
-            Some(right) => right,
+            Some((right, _)) => right,
             None => {
                 let nearest = ranked.iter().find(|(_, it)| it.is_right());
                 self.with_levels(&nearest.context("there is no stage to compare with")?.1)?
@@ -270,22 +276,25 @@ impl Search<'_> {
                 }
             }
         }
-        screened.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        let limit = 3.0 * screened.first().map_or(0.0, |(excess, _)| excess.max(0.0)) + FINE_MOST;
+        // Of those that are as near, what differs less from the book comes first.
+        let key = |(excess, it): &(f64, Hypothesis)| ((excess.max(0.0) / FINE_MOST) as u64, it.rows.len());
+        screened.sort_by(|a, b| key(a).cmp(&key(b)).then(a.0.total_cmp(&b.0)));
+        let limit = 1.5 * screened.first().map_or(0.0, |(excess, _)| excess.max(0.0)) + FINE_MOST;
         screened.retain(|(excess, _)| *excess < limit);
         screened.truncate(COMPARED[1]);
         let mut compared = Vec::new();
         for hypothesis in screened.into_iter().map(|(_, hypothesis)| hypothesis).chain(fine) {
             let named = hypothesis.named().map_or("a mistake", |named| named.title);
             (self.say)(format!("comparing: {named}"));
-            compared.push(self.compared(&hypothesis)?);
+            compared.push(self.with_levels(&hypothesis)?);
         }
         let enough =
             |compared: &[Compared]| compared.iter().filter(|it| it.fit.is_enough()).cloned().collect();
         if let Some(finding) = self.explained(&right, enough(&compared)) {
             return Ok(finding);
         }
-        for base in bases.iter().take(PLAIN) {
+        let tried = if right.fit.excess < 10.0 * FAR { BASES } else { 1 };
+        for base in bases.iter().take(tried) {
             self.numbers(base, factor, right.fit.samples, &mut compared)?;
             if let Some(finding) = self.explained(&right, enough(&compared)) {
                 return Ok(finding);
@@ -362,9 +371,10 @@ impl Search<'_> {
         let mut hypothesis = hypothesis.clone();
         let mut rendered = self.rendered(&hypothesis)?;
         let mean = hypothesis.written.wraps.then(|| rendered.mean());
-        let seen = self.seen(&hypothesis.written, mean.as_deref());
+        let mut seen = self.seen(&hypothesis.written, mean.as_deref());
+        seen.tolerance = seen.tolerance.max(hypothesis.tolerance());
         if let Some(added) = hypothesis.added {
-            (rendered, hypothesis.note) = with_added(&seen, rendered, added);
+            (rendered, hypothesis.note) = with_added(&seen, &hypothesis.written, rendered, added);
         }
         let fit = Fit::new(&seen, &hypothesis.written, &rendered);
         Ok(Compared { hypothesis, rendered, fit })
@@ -409,7 +419,7 @@ impl Search<'_> {
     /// A hypothesis in full size, with the levels of bytes that fit best.
     fn with_levels(&mut self, hypothesis: &Hypothesis) -> Result<Compared> {
         let mut best = self.compared(hypothesis)?;
-        if best.fit.excess > FAR {
+        if best.fit.excess > FAR || hypothesis.written.wraps {
             return Ok(best);
         }
         for mistake in applying_to(&hypothesis.recipe).filter(|it| it.is_right) {
@@ -418,7 +428,8 @@ impl Search<'_> {
                 if other.written.curve != hypothesis.written.curve || best.fit.is_enough() {
                     continue;
                 }
-                let seen = self.seen(&other.written, None);
+                let mut seen = self.seen(&other.written, None);
+                seen.tolerance = seen.tolerance.max(hypothesis.tolerance());
                 let fit = Fit::new(&seen, &other.written, &best.rendered);
                 if fit.score < best.fit.score {
                     best = Compared { hypothesis: other.clone(), rendered: best.rendered, fit };
@@ -461,6 +472,14 @@ impl Search<'_> {
                     let of =
                         if written.order.exchanges_sides() { exchanged.as_ref() } else { Some(&rendered) };
                     let Some(rendered) = of else { continue };
+                    if written.wraps {
+                        let mean =
+                            enlarged(&rendered.mean(), size.map(|side| side as usize), factor as usize);
+                        let seen = self.seen(&written, Some(&mean));
+                        let values = reduced(&seen.values, seen.size[0] as usize, factor as usize);
+                        ranked.push((rough(&values, rendered, written.linear(255, 0, 1)[0]), hypothesis));
+                        continue;
+                    }
                     let place = known.iter().position(|(known, _)| *known == written).unwrap_or_else(|| {
                         let seen = self.seen(&written, None);
                         known.push((written, reduced(&seen.values, seen.size[0] as usize, factor as usize)));
@@ -515,7 +534,6 @@ fn bases(ranked: &[(f64, Hypothesis)], sections: usize) -> Vec<Hypothesis> {
         }
         stages.push(id);
         let of_stage = || rights.iter().filter(|(_, it)| it.stage.id == id);
-        let is_simple = |it: &Hypothesis| it.rows.iter().all(|row| row.id.starts_with("edition"));
         let book = of_stage().find(|(_, it)| it.rows.is_empty());
         let edition = of_stage().find(|(_, it)| !it.rows.is_empty() && is_simple(it));
         let other = of_stage().find(|(_, it)| !is_simple(it));
@@ -530,6 +548,13 @@ fn bases(ranked: &[(f64, Hypothesis)], sections: usize) -> Vec<Hypothesis> {
         bases.extend(own);
     }
     bases
+}
+
+/// Whether a picture differs from the book's only by its edition and its bytes.
+fn is_simple(it: &Hypothesis) -> bool {
+    it.rows.iter().all(|row| {
+        row.id.starts_with("edition") || matches!(row.section, "8.2" | "9.5") && row.id != "reflectance"
+    })
 }
 
 /// Whether two small pictures are equal.
@@ -548,7 +573,8 @@ fn rough(seen: &[[f64; 3]], rendered: &Rendered, most: f64) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     let halves = rendered.halves.each_ref().map(|half| half.as_flattened());
     for (index, value) in seen.as_flattened().iter().enumerate() {
-        let square = (value - halves[0][index].min(most)) * (value - halves[1][index].min(most))
+        let square = (value - halves[0][index].clamp(0.0, most))
+            * (value - halves[1][index].clamp(0.0, most))
             / (4.0 * value.max(0.02));
         if square.is_finite() {
             sum += square;
@@ -559,35 +585,42 @@ fn rough(seen: &[[f64; 3]], rendered: &Rendered, most: f64) -> f64 {
 }
 
 /// The picture with what fits best added, and a remark.
-pub fn with_added(seen: &Seen, rendered: Rendered, added: Added) -> (Rendered, Option<String>) {
+pub fn with_added(
+    seen: &Seen,
+    written: &Written,
+    rendered: Rendered,
+    added: Added,
+) -> (Rendered, Option<String>) {
+    const STEPS: usize = 5;
     let from = |index: usize| match added {
         Added::Gain => index,
         Added::Carry => index.saturating_sub(1),
     };
-    let right = rendered.mean();
-    let (mut product, mut square) = (0.0, 1e-9);
-    for (index, (seen, expected)) in seen.values.iter().zip(&right).enumerate() {
-        for channel in 0..3 {
-            let (direction, value) = (right[from(index)][channel], seen[channel]);
-            // A value at the top of its range is only a lower bound.
-            if value.is_finite() && value < 0.98 {
-                let weight = 1.0 / (0.01 + expected[channel]);
-                product += weight * direction * (value - expected[channel]);
-                square += weight * direction * direction;
+    let (right, mut times, mut at) = (rendered.mean(), 0.0, rendered.clone());
+    for _ in 0..STEPS {
+        let fit = Fit::new(seen, written, &at);
+        let (mut product, mut square) = (0.0, 1e-9);
+        for (index, left) in fit.left.iter().enumerate() {
+            for channel in (0..3).filter(|channel| left[*channel].is_finite()) {
+                // A value at the top of its range is only a lower bound.
+                if seen.values[index][channel] < 0.98 {
+                    let direction = right[from(index)][channel] / fit.steps[index][channel];
+                    product += direction * left[channel] / fit.variance[index][channel];
+                    square += direction * direction / fit.variance[index][channel];
+                }
             }
         }
+        let least = if added == Added::Gain { -0.99 } else { 0.0 };
+        times = (times + product / square).max(least);
+        at = rendered.plus(times, from);
     }
-    let times = (product / square).max(match added {
-        Added::Gain => -0.99,
-        Added::Carry => 0.0,
-    });
     let note = match added {
         Added::Gain => {
             format!("your picture is {:.3} times as bright as ours, in linear values", 1.0 + times)
         }
         Added::Carry => format!("each pixel holds about 1/{:.0} of the one before", 1.0 / times),
     };
-    (rendered.plus(times, from), Some(note))
+    (at, Some(note))
 }
 
 /// The factor by which the first pictures are smaller: a common divisor of both sides, if a suitable one exists.

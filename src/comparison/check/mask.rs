@@ -11,11 +11,11 @@ pub fn grown(mask: &[bool], [width, height]: [usize; 2]) -> Vec<bool> {
 
 /// A mask of squares of `factor` x `factor` pixels as one of pixels. Incomplete squares at the right and the bottom are
 /// like those beside them.
-pub fn enlarged(mask: &[bool], [width, height]: [usize; 2], factor: usize) -> Vec<bool> {
+pub fn enlarged<T: Copy>(mask: &[T], [width, height]: [usize; 2], factor: usize) -> Vec<T> {
     let (columns, rows) = (width / factor, height / factor);
-    let is_in = |pixel: usize| {
+    let at = |pixel: usize| {
         let (x, y) = (pixel % width / factor, pixel / width / factor);
         mask[y.min(rows - 1) * columns + x.min(columns - 1)]
     };
-    (0..width * height).map(is_in).collect()
+    (0..width * height).map(at).collect()
 }

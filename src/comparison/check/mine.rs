@@ -120,7 +120,63 @@ impl Mine {
             (128.0 * (low + high)) as u8
         };
         let bytes = rgb.iter().map(|pixel| pixel.map(byte)).collect();
-        Ok(Mine { width, height, rows: height, bytes, ignored: None, most, format, damages, notes })
+        let mut mine =
+            Mine { width, height, rows: height, bytes, ignored: None, most, format, damages, notes };
+        if mine.bytes.len() == (width * height) as usize {
+            mine.crop();
+            mine.shrink();
+        }
+        Ok(mine)
+    }
+
+    /// Takes away the frame of a screenshot: rows and columns of one colour.
+    fn crop(&mut self) {
+        let [width, height] = [self.width as usize, self.height as usize];
+        let at = |x: usize, y: usize| self.bytes[y * width + x];
+        let row =
+            |y: usize| (0..width).all(|x| at(x, y) == at(0, if y < height / 2 { 0 } else { height - 1 }));
+        let column =
+            |x: usize| (0..height).all(|y| at(x, y) == at(if x < width / 2 { 0 } else { width - 1 }, 0));
+        let [top, bottom] =
+            [(0..height).take_while(|y| row(*y)).count(), (0..height).rev().take_while(|y| row(*y)).count()];
+        let [left, right] = [
+            (0..width).take_while(|x| column(*x)).count(),
+            (0..width).rev().take_while(|x| column(*x)).count(),
+        ];
+        let size = [width.saturating_sub(left + right), height.saturating_sub(top + bottom)];
+        let is_frame = top + bottom + left + right > 1
+            && size[0] >= SIZE_MIN[0] as usize
+            && size[1] >= SIZE_MIN[1] as usize;
+        if is_frame {
+            let rows = self.bytes.chunks(width).skip(top).take(size[1]);
+            self.bytes = rows.flat_map(|row| &row[left..left + size[0]]).copied().collect();
+            [self.width, self.height] = size.map(|side| side as u32);
+            self.rows = self.height;
+            self.notes.push(format!(
+                "it has a frame, which was cut away; {} x {} pixels are left",
+                size[0], size[1]
+            ));
+        }
+    }
+
+    /// Undoes scaling by a whole number, if all pixels of each square are equal.
+    fn shrink(&mut self) {
+        let [width, height] = [self.width as usize, self.height as usize];
+        let is_scaled = |by: &usize| {
+            let equals_first = |at: usize| {
+                let (x, y) = (at % width, at / width);
+                self.bytes[at] == self.bytes[y / by * by * width + x / by * by]
+            };
+            width.is_multiple_of(*by) && height.is_multiple_of(*by) && (0..width * height).all(equals_first)
+        };
+        let is_large = |by: &usize| width / by >= SIZE_MIN[0] as usize && height / by >= SIZE_MIN[1] as usize;
+        if let Some(by) = (2..=8).rev().filter(is_large).find(is_scaled) {
+            let rows = self.bytes.chunks(width).step_by(by);
+            self.bytes = rows.flat_map(|row| row.iter().step_by(by)).copied().collect();
+            [self.width, self.height] = [width / by, height / by].map(|side| side as u32);
+            self.rows = self.height;
+            self.notes.push(format!("its pixels are squares of {by} x {by}; they were compared as one each"));
+        }
     }
 
     /// Bytes in a step of the file's values, at least 1.

@@ -233,7 +233,8 @@ mistakes! {
         |it| it.written.order = Order::Padded;
     "gradient-over-width", "2.2", "column and row are divided by width and height, so no value reaches 1",
         "divide by `image_width - 1` and `image_height - 1`: the last pixel is then 1",
-        is_gradient, WRONG, |it| it.plain().gradient = |_, [x, y]| DVec3::new(x, y, 0.0);
+        is_gradient, WRONG, |it| it.plain().gradient = |_, [x, y]| DVec3::new(x, y, 0.0),
+        |it| it.plain().gradient = |_, [x, y]| (255.999 / 256.0) * DVec3::new(x, y, 0.0);
     "gradient-turned", "2.2", "red follows the rows and green the columns",
         "red is `i / (image_width - 1)`, green is `j / (image_height - 1)`",
         is_gradient, WRONG, |it| it.plain().gradient = |[x, y], _| DVec3::new(y, x, 0.0);

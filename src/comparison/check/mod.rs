@@ -33,15 +33,15 @@ use crate::cli::{CheckOptions, check_outputs};
 use crate::numbers::heat::HeatScale;
 use crate::system::console;
 use crate::system::files::{STANDARD, make_directory, replace_file, write_text};
-use crate::system::terminal::{Display, print_beside};
+use crate::system::terminal::{Display, ProgressChoice, print_beside};
 use anyhow::{Context, Result, ensure};
 use image::{ImageFormat, RgbImage};
 use serde_json::json;
-use std::io;
+use std::io::{self, IsTerminal, stderr};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Checks pictures. Exit code 0 means that all are right, 1 that one is wrong, and 2 that one could not be checked.
 pub fn run(options: &CheckOptions) -> Result<ExitCode> {
@@ -62,7 +62,7 @@ pub fn run(options: &CheckOptions) -> Result<ExitCode> {
         let image = image.context("a picture has another size than its pixels")?;
         replace_file(path, |writer| image.write_to(writer, ImageFormat::Png).map_err(io::Error::other))?;
     }
-    let text = text(picture, &mine, &finding, &files);
+    let text = text(picture, &mine, &finding, &files, options.stage.is_some());
     deliver(options.json.as_deref(), &text, 1, &figures(picture, &mine, &finding, &files))?;
     Ok(finding.answer(&mine).verdict().exit_code())
 }
@@ -72,8 +72,15 @@ const INTERVAL: Duration = Duration::from_secs(5);
 
 /// Judges a picture and shows what is being tried.
 fn judged(mine: &Mine, options: &CheckOptions, stop: &AtomicBool) -> Result<Finding> {
-    let mut display = Display::new(options.progress, 1, "{wide_msg}", "", INTERVAL);
-    let finding = judge(mine, options.stage, stop, |what| display.update(0, || what));
+    let is_silent = options.progress == ProgressChoice::Auto && !stderr().is_terminal();
+    let choice = if is_silent { ProgressChoice::On } else { options.progress };
+    let (mut display, begin) = (Display::new(choice, 1, "{wide_msg}", "", INTERVAL), Instant::now());
+    let finding = judge(mine, options.stage, stop, |what| {
+        // A quick answer needs no lines in a log.
+        if !is_silent || begin.elapsed() >= INTERVAL {
+            display.update(0, || what);
+        }
+    });
     display.clear();
     finding
 }
@@ -149,18 +156,18 @@ fn pictures(mine: &Mine, finding: &Finding) -> [Vec<[u8; 3]>; 3] {
     [mine.bytes.clone(), ours, difference]
 }
 
-/// The report for people; `files` lists the pictures written.
-pub fn text(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> String {
+/// The report for people; `files` lists the pictures written, and `is_chosen` tells whether the user chose the stage.
+pub fn text(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf], is_chosen: bool) -> String {
     let (stage, answer) = (finding.stage, finding.answer(mine));
-    let picture = format!("{}, {}, {}x{}", path.display(), mine.format, mine.width, mine.height);
-    let stage = format!("{}, section {}, {}", stage.id, stage.section, stage.section_title());
-    let mut text = vec![("picture", picture), ("stage", stage), ("verdict", answer.title)];
-    text.push(("", answer.explanation));
-    text.extend(answer.evidence.into_iter().map(|line| ("seen", line)));
+    let mut text = vec![("verdict", answer.title), ("", answer.explanation)];
     text.extend(answer.remedy.map(|remedy| ("change", remedy)));
+    text.extend(answer.evidence.into_iter().map(|line| ("seen", line)));
     if answer.kind == AnswerKind::Unknown {
-        text.push(("note", "--stage names the section, and --out DIR shows where the two differ".to_owned()));
+        let stage = if is_chosen { "" } else { "--stage names the section, and " };
+        text.push(("note", format!("{stage}--out DIR shows where the two differ")));
     }
+    text.push(("picture", format!("{}, {}, {}x{}", path.display(), mine.format, mine.width, mine.height)));
+    text.push(("stage", format!("{}, section {}, {}", stage.id, stage.section, stage.section_title())));
     text.extend(answer.section.map(|section| ("read", format!("{}, {}", section.number, section.url))));
     text.extend(mine.notes.iter().map(|note| ("note", note.clone())));
     for damage in answer.damages {

@@ -271,7 +271,7 @@ impl What {
             }
             What::Center(sphere, _) | What::Radius(sphere) => {
                 let sphere = &scene.spheres[sphere];
-                (section, format!("sphere({}, {}", vector("point3", sphere.center), plain(sphere.radius)))
+                (section, format!("sphere({}, {})", vector("point3", sphere.center), plain(sphere.radius)))
             }
             What::Albedo(material, _) | What::Fuzz(material) | What::Index(material) => {
                 (section, of_material(material))

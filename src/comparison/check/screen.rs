@@ -90,7 +90,7 @@ impl<'s, 'a> Screen<'s, 'a> {
         let difference = self.difference(of, half)?;
         let all =
             self.values.as_flattened().iter().zip(self.mean.as_flattened()).zip(difference.as_flattened());
-        let rest = all.map(|((value, mean), more)| value - (mean + more).min(self.most));
+        let rest = all.map(|((value, mean), more)| value - (mean + more).clamp(0.0, self.most));
         Ok(rest.map(|x| if x.is_finite() { x } else { 0.0 }).collect())
     }
 

@@ -98,7 +98,7 @@ pub(super) fn colours(reader: &mut (impl BufRead + Seek)) -> (Option<Encoding>, 
         return (stated, curve.into_iter().chain(primaries).collect());
     }
     if info.icc_profile.is_some() {
-        let note = "it has an ICC profile, which is ignored; choose the transfer curve with --encoding";
+        let note = "it has an ICC profile, which is ignored";
         return (None, vec![note.to_owned()]);
     }
     if info.srgb.is_some() {
