@@ -4,7 +4,7 @@
 //! and rounding. The number of samples is fitted to the differences of neighbours. What is left must then be white in
 //! blocks of four sizes, and lead nowhere.
 
-use super::hypothesis::Rendered;
+use super::hypothesis::{Hypothesis, Rendered};
 use super::written::{Levels, Seen, Written};
 use rayon::prelude::*;
 
@@ -36,7 +36,15 @@ const SAMPLES_MOST: f64 = 20_000.0;
 /// Slopes this many deviations from 0 are no chance.
 const SLOPE_DEVIATIONS: f64 = 6.0;
 
-/// The reader's picture compared with a hypothesis. All errors are in bytes.
+/// The reader's picture compared with a hypothesis.
+#[derive(Clone, Debug)]
+pub struct Compared {
+    pub hypothesis: Hypothesis,
+    pub rendered: Rendered,
+    pub fit: Fit,
+}
+
+/// How a picture fits a hypothesis. All errors are in bytes.
 #[derive(Clone, Debug)]
 pub struct Fit {
     /// The reader's samples per pixel; `None` if no noise tells.

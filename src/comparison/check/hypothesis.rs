@@ -1,7 +1,6 @@
 //! Hypotheses: the right picture of a section, of an older edition, or with a mistake or another number; and how they are
 //! rendered.
 
-use super::numbers::Number;
 use super::tracer::{Steps, Tracer};
 use super::written::{Written, reduced};
 use crate::job::recipe::Recipe;
@@ -39,6 +38,45 @@ impl Mistake {
         };
         self.changes.iter().filter_map(picture).collect()
     }
+}
+
+/// A number that explains the reader's picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Number {
+    pub what: What,
+    pub value: f64,
+    /// One standard deviation.
+    pub deviation: f64,
+    /// That of the book.
+    pub right: f64,
+    /// What the number is, in the reader's words.
+    pub words: String,
+    /// The section that has it, and the book's code there.
+    pub section: &'static str,
+    pub code: String,
+}
+
+/// Axes are 0, 1 and 2; spheres and materials are indices of the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum What {
+    Eye(usize),
+    Target(usize),
+    FieldOfView,
+    DefocusAngle,
+    FocusDistance,
+    Center(usize, usize),
+    Radius(usize),
+    Albedo(usize, usize),
+    Fuzz(usize),
+    Index(usize),
+    /// The index of all glass; what is air in glass has the inverse.
+    Glass,
+    /// Of the bottom (0) or the top (1) of the sky.
+    Sky(usize, usize),
+    /// Width (0) or height (1) of the viewport, as a factor.
+    Scale(usize),
+    /// The viewport's place, in its widths (0) or heights (1).
+    Shift(usize),
 }
 
 /// A candidate for the reader's picture: how its linear values are made, and how they become bytes.

@@ -2,12 +2,12 @@
 //! number explains it.
 
 use super::Mine;
-use super::fit::Fit;
-use super::hypothesis::{Added, Hypothesis, Mistake, Rendered, Studio};
+use super::fit::{Compared, Fit};
+use super::hypothesis::{Added, Hypothesis, Mistake, Rendered, Studio, What};
 use super::mask::{enlarged, grown};
 use super::mistakes::applying_to;
 use super::noise::{altered, is_shared};
-use super::numbers::{What, candidates, finished};
+use super::numbers::{candidates, finished};
 use super::random::{common, complete, fixed};
 use super::screen::{Screen, small};
 use super::written::{Seen, Written, reduced};
@@ -42,14 +42,6 @@ const FAR: f64 = 100.0;
 
 /// A guess must leave less than this share of what differs.
 const EXPLAINED: f64 = 0.5;
-
-/// The reader's picture compared with a hypothesis.
-#[derive(Clone, Debug)]
-pub struct Compared {
-    pub hypothesis: Hypothesis,
-    pub rendered: Rendered,
-    pub fit: Fit,
-}
 
 #[derive(Clone, Debug)]
 pub struct Finding {
@@ -422,18 +414,21 @@ impl Search<'_> {
         if best.fit.excess > FAR || hypothesis.written.wraps {
             return Ok(best);
         }
-        for mistake in applying_to(&hypothesis.recipe).filter(|it| it.is_right) {
-            for other in mistake.pictures(hypothesis).iter().filter(|it| is_written_otherwise(it, hypothesis))
-            {
-                if other.written.curve != hypothesis.written.curve || best.fit.is_enough() {
-                    continue;
-                }
-                let mut seen = self.seen(&other.written, None);
-                seen.tolerance = seen.tolerance.max(hypothesis.tolerance());
-                let fit = Fit::new(&seen, &other.written, &best.rendered);
-                if fit.score < best.fit.score {
-                    best = Compared { hypothesis: other.clone(), rendered: best.rendered, fit };
-                }
+        // As in the book's first sections.
+        let mut early = hypothesis.clone();
+        early.written.levels = 255.999;
+        let rows = applying_to(&hypothesis.recipe).filter(|it| it.is_right);
+        for other in [early].into_iter().chain(rows.flat_map(|it| it.pictures(hypothesis))) {
+            let is_level =
+                is_written_otherwise(&other, hypothesis) && other.written.curve == hypothesis.written.curve;
+            if !is_level || best.fit.is_enough() {
+                continue;
+            }
+            let mut seen = self.seen(&other.written, None);
+            seen.tolerance = seen.tolerance.max(hypothesis.tolerance());
+            let fit = Fit::new(&seen, &other.written, &best.rendered);
+            if fit.score < best.fit.score {
+                best = Compared { hypothesis: other, rendered: best.rendered, fit };
             }
         }
         Ok(best)

@@ -21,8 +21,9 @@ mod written;
 
 pub use crate::job::output::Damage;
 pub use answer::{Answer, AnswerKind, Section};
+pub use fit::Compared;
 pub use hypothesis::{Hypothesis, Mistake, Studio};
-pub use judge::{Compared, Finding, judge};
+pub use judge::{Finding, judge};
 pub use mine::Mine;
 pub use mistakes::MISTAKES;
 pub use watch::{POLL_INTERVAL, Watched};

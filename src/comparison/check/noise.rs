@@ -2,8 +2,8 @@
 //! all pixels share their random numbers.
 
 use super::Mine;
+use super::fit::Compared;
 use super::hypothesis::Hypothesis;
-use super::judge::Compared;
 use super::tracer::Tracer;
 use super::written::Seen;
 use std::collections::HashSet;

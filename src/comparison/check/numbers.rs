@@ -2,7 +2,7 @@
 //! both sides, tell what each number would change; Gauss-Newton finds its value.
 
 use super::fit::Fit;
-use super::hypothesis::{Hypothesis, Rendered};
+use super::hypothesis::{Hypothesis, Number, Rendered, What};
 use super::mistakes::bubble;
 use super::screen::Screen;
 use super::written::Seen;
@@ -10,45 +10,6 @@ use crate::scene::{Material, Scene, VFOV_LIMITS_DEGREES};
 use anyhow::{Context, Result};
 use glam::{DMat4, DVec3, DVec4};
 use std::sync::Arc;
-
-/// A number that explains the reader's picture.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Number {
-    pub what: What,
-    pub value: f64,
-    /// One standard deviation.
-    pub deviation: f64,
-    /// That of the book.
-    pub right: f64,
-    /// What the number is, in the reader's words.
-    pub words: String,
-    /// The section that has it, and the book's code there.
-    pub section: &'static str,
-    pub code: String,
-}
-
-/// Axes are 0, 1 and 2; spheres and materials are indices of the scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum What {
-    Eye(usize),
-    Target(usize),
-    FieldOfView,
-    DefocusAngle,
-    FocusDistance,
-    Center(usize, usize),
-    Radius(usize),
-    Albedo(usize, usize),
-    Fuzz(usize),
-    Index(usize),
-    /// The index of all glass; what is air in glass has the inverse.
-    Glass,
-    /// Of the bottom (0) or the top (1) of the sky.
-    Sky(usize, usize),
-    /// Width (0) or height (1) of the viewport, as a factor.
-    Scale(usize),
-    /// The viewport's place, in its widths (0) or heights (1).
-    Shift(usize),
-}
 
 /// The smallest change that shows, the farthest from the start, and the limits of a number.
 struct Reach {

@@ -1,8 +1,8 @@
 //! The final picture of 14.1, in which the small spheres are placed at random: what every program's picture has in common.
 
 use super::Mine;
+use super::fit::Compared;
 use super::hypothesis::{Hypothesis, Studio};
-use super::judge::Compared;
 use super::mask::{enlarged, grown};
 use super::screen::small;
 use super::written::EQUAL;

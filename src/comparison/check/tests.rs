@@ -1,9 +1,8 @@
 //! Mistakes and their pictures, mistakes that blocks cannot show, and the report.
 
 use super::fit::Fit;
-use super::hypothesis::{Hypothesis, Mistake, Rendered, Studio};
+use super::hypothesis::{Hypothesis, Mistake, Rendered, Studio, What};
 use super::mistakes::{MISTAKES, bubble};
-use super::numbers::What;
 use super::written::{Order, Seen, Written};
 use super::*;
 use crate::job::output::Encoding;
@@ -244,20 +243,6 @@ fn a_number_that_was_typed_wrong_is_found() {
         let answer = finding.answer(&mine);
         assert!(answer.remedy.is_some_and(|remedy| remedy.starts_with("Look at `")), "{}", answer.title);
     }
-}
-
-/// Harmless differences together are none.
-#[test]
-fn editions_are_bases() {
-    let mut studio = Studio::new(&GO).unwrap();
-    let edition = mistake("edition-scene").pictures(&right("metal", [160, 90])).pop().unwrap();
-    let harmless = mistake("scale-255").pictures(&edition).remove(0);
-    let finding = judged(&shown(&mut studio, &harmless, 60), "metal");
-    assert!(
-        finding.is_right() && finding.named().is_some_and(|named| named.is_right),
-        "{:?}",
-        finding.named()
-    );
 }
 
 /// A screenshot at twice the size, in a frame, is the same picture.
