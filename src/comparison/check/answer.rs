@@ -334,7 +334,9 @@ impl Hypothesis {
             .filter(|(_, it)| it.is_some_and(|it| it.center == sphere.center));
         let (mut sum, mut count) = ([0, 0], 0);
         for (pixel, _) in shown {
-            (sum[0] += pixel as u32 % width, sum[1] += pixel as u32 / width, count += 1);
+            sum[0] += pixel as u32 % width;
+            sum[1] += pixel as u32 / width;
+            count += 1;
         }
         (count > 0).then(|| sum.map(|sum| sum / count))
     }

@@ -181,7 +181,7 @@ fn samples_of(seen: &Seen, mean: &[[f64; 3]], steps: &[[f64; 3]], rendered: &Ren
             }
             for channel in 0..3 {
                 let (a, b) = (seen.values[pixel][channel], seen.values[other][channel]);
-                if !(a.max(b) < 0.99) {
+                if a.max(b) >= 0.99 || (a + b).is_nan() {
                     continue;
                 }
                 let squares = [pixel, other].map(|at| steps[at][channel].powi(2));
@@ -283,12 +283,12 @@ fn slopes(
     const LEAST: [f64; 4] = [0.06, 0.06, 0.03, 0.003];
     let [width, height] = seen.size.map(|side| side as usize);
     let mut sums = [[0.0; 2]; 4];
-    for half in 0..2 {
+    for (half, left) in left.iter().enumerate() {
         let mean = &rendered.halves[1 - half];
         for y in 1..height.saturating_sub(1) {
             for pixel in y * width + 1..(y + 1) * width - 1 {
                 for channel in 0..3 {
-                    let rest = left[half][pixel][channel];
+                    let rest = left[pixel][channel];
                     if !rest.is_finite() {
                         continue;
                     }

@@ -337,9 +337,12 @@ fn sides(at: &Hypothesis, what: What) -> ([Hypothesis; 2], f64) {
     (ends.map(|end| with(at, &[what], &[end])), ends[1] - ends[0])
 }
 
+/// Numbers, and the hypothesis that has them.
+pub type Start = (Vec<What>, Hypothesis);
+
 /// Numbers that may explain what is left of a base, each as a hypothesis, the likeliest first; those that are typed together
 /// come after the single ones.
-pub fn candidates(screen: &mut Screen) -> Result<[Vec<(Vec<What>, Hypothesis)>; 2]> {
+pub fn candidates(screen: &mut Screen) -> Result<[Vec<Start>; 2]> {
     /// A step of a number must explain at least this share of what is left.
     const LEAST: f64 = 0.01;
     const TRIED: [usize; 2] = [8, 8];

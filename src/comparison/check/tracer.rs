@@ -12,6 +12,9 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// A direction, from two random vectors, the normal and the point.
+type Scatter = fn([DVec3; 2], DVec3, DVec3) -> DVec3;
+
 /// The replaceable steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Steps {
@@ -47,8 +50,8 @@ pub struct Steps {
     pub vector: fn(&mut Random) -> DVec3,
     /// The random vector of fuzz, likewise.
     pub fuzz: fn(&mut Random) -> DVec3,
-    /// The direction from a matte surface: from two random vectors, the normal and the point; `None` for the stage's.
-    pub scatter: Option<fn([DVec3; 2], DVec3, DVec3) -> DVec3>,
+    /// The direction from a matte surface; `None` for the stage's.
+    pub scatter: Option<Scatter>,
     /// The light that a bounce off a surface of this albedo adds, and the factor of the light from later bounces.
     pub combine: fn(DVec3) -> [DVec3; 2],
     /// How many times a reflection subtracts the component along the normal: 2 in the book.
