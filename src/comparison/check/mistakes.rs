@@ -412,6 +412,12 @@ mistakes! {
     "glass-tinted", "11.2", "glass absorbs light", "set `attenuation = color(1.0, 1.0, 1.0)` in `dielectric::scatter`", has_glass, WRONG,
         |it| it.plain().glass = DVec3::splat(0.9), |it| it.plain().glass = DVec3::splat(0.8),
         |it| it.plain().glass = DVec3::splat(0.5), |it| it.plain().glass = DVec3::new(0.5, 0.7, 1.0);
+    "lens-radius", "13.2", "the radius of the lens lacks the focus distance",
+        "`defocus_radius = focus_dist * std::tan(degrees_to_radians(defocus_angle / 2))`", has_lens, WRONG, |it| {
+            let camera = &mut it.recipe.camera;
+            let tangent = camera.defocus_tangent() / camera.effective_focus_distance();
+            camera.defocus_angle_degrees = 2.0 * tangent.atan().to_degrees();
+        };
     "lens-disk", "13.2", "the points on the lens are not spread evenly over a disk",
         "draw points in the square -1..1 until one is inside the unit disk", has_lens, WRONG,
         |it| fine(it).plain().disk = |pair| pair.map(|x| 2.0 * x - 1.0),
