@@ -246,7 +246,7 @@ impl Rendered {
 /// Renders hypotheses until it is told to stop.
 pub struct Studio<'a> {
     fast: CpuRenderer,
-    stop: &'a AtomicBool,
+    pub stop: &'a AtomicBool,
 }
 
 /// The size of the book's pictures: 400 x 225.

@@ -12,9 +12,9 @@ use super::random::{common, complete, fixed};
 use super::screen::{Screen, small};
 use super::written::{Seen, Written, reduced};
 use crate::stages::Stage;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Samples per pixel of a picture in full size, by the program's own tracer and by the plain one.
 const FINE: [u64; 2] = [256, 64];
@@ -296,7 +296,7 @@ impl Search<'_> {
         let shared = applying_to(&finding.right.hypothesis.recipe).find(|mistake| mistake.id == SHARED);
         let shared = shared.and_then(|shared| shared.pictures(&finding.right.hypothesis).pop());
         let seen = self.seen(&finding.right.hypothesis.written, None);
-        let guess = match shared.filter(|shared| is_shared(&seen, &finding.right, shared)) {
+        let guess = match shared.filter(|shared| is_shared(&seen, &finding.right, shared, self.studio.stop)) {
             Some(hypothesis) => Some(Compared { hypothesis, ..finding.right.clone() }),
             None => {
                 let wrong = compared.into_iter().filter(|it| !it.hypothesis.is_right());
@@ -304,6 +304,7 @@ impl Search<'_> {
                 nearest.filter(|it| it.fit.excess < FAR.min(EXPLAINED * finding.right.fit.excess))
             }
         };
+        ensure!(!self.studio.stop.load(Ordering::Relaxed), "the check was stopped");
         if let Some(guess) = guess {
             (finding.stage, finding.found) = (guess.hypothesis.stage, Some(guess));
         }

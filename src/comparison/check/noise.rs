@@ -135,14 +135,14 @@ fn texture(right: &Compared, width: usize, value: impl Fn(usize, usize) -> f64) 
 
 /// Whether the reader's picture differs from the right one as if its pixels shared random numbers, as `shared` has them. Each
 /// generator gives a different picture, so only the texture of the difference is compared.
-pub fn is_shared(seen: &Seen, right: &Compared, shared: &Hypothesis) -> bool {
+pub fn is_shared(seen: &Seen, right: &Compared, shared: &Hypothesis, stop: &AtomicBool) -> bool {
     let Some(steps) = shared.steps else { return false };
     let (width, mean) = (seen.size[0] as usize, right.rendered.mean());
     let mine = texture(right, width, |pixel, channel| seen.values[pixel][channel] - mean[pixel][channel]);
     let tracer = Tracer::new(&shared.recipe, steps, &shared.viewport, 1);
     let others: Vec<[f64; 2]> = (0..REALISATIONS)
         .map(|number| {
-            let made = tracer.moments(12 * number..12 * (number + 1), None, &AtomicBool::new(false));
+            let made = tracer.moments(12 * number..12 * (number + 1), None, stop);
             texture(right, width, |pixel, channel| made[pixel][0][channel] - mean[pixel][channel])
         })
         .collect();
