@@ -98,6 +98,14 @@ struct Silence {
     compiles: bool,
 }
 
+impl Silence {
+    /// Counts a wait in which the device has not responded, and returns whether `patience` is over.
+    fn lasts(&mut self, wait: Duration, patience: Duration) -> bool {
+        self.waited += wait;
+        self.waited >= patience * if self.compiles { COMPILING_PATIENCE } else { 1 }
+    }
+}
+
 /// How often a wait for the device checks whether the result is still wanted.
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
 
@@ -231,15 +239,15 @@ impl Gpu {
             let polled = self.poll(submission);
             self.faults.check()?;
             let mut silence = self.silence();
-            match polled {
+            let is_over = match polled {
                 Ok(_) => {
-                    (silence.waited, silence.compiles) = (Duration::ZERO, false);
+                    *silence = Silence::default();
                     return Ok(true);
                 }
-                Err(wgpu::PollError::Timeout) => silence.waited += begin.elapsed(),
+                Err(wgpu::PollError::Timeout) => silence.lasts(begin.elapsed(), self.patience),
                 Err(error) => return Err(format!("the device was lost: {error}")),
-            }
-            if silence.waited >= self.patience * if silence.compiles { COMPILING_PATIENCE } else { 1 } {
+            };
+            if is_over {
                 self.faults.note(format!(
                     "{} has not responded for {:.0} s and is given up; render on the CPU, or start again once it responds",
                     self.adapter.name,
@@ -257,5 +265,21 @@ impl Gpu {
             submission_index: Some(submission.clone()),
             timeout: Some(POLL_INTERVAL),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tested apart from a device, as a software adapter may do its work while it is submitted.
+    #[test]
+    fn a_device_is_given_up_when_patience_is_over() {
+        let (wait, patience) = (Duration::from_secs(1), Duration::from_secs(3));
+        let mut silence = Silence::default();
+        assert_eq!([(); 4].map(|()| silence.lasts(wait, patience)), [false, false, true, true]);
+        let mut silence = Silence { compiles: true, ..Silence::default() };
+        let waits = (1..).find(|_| silence.lasts(wait, patience));
+        assert_eq!(waits, Some(3 * COMPILING_PATIENCE));
     }
 }

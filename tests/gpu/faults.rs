@@ -121,20 +121,3 @@ fn the_cpu_completes_the_picture_of_a_broken_device() {
         }
     }
 }
-
-/// On a software adapter, where a dispatch of this size takes longer than the patience.
-#[test]
-fn a_device_that_does_not_respond_is_given_up() {
-    const SAMPLES: u64 = 1 << 13;
-    let options = GpuOptions {
-        samples_per_dispatch: Some(SAMPLES),
-        patience: Duration::from_millis(1),
-        ..GpuOptions::default()
-    };
-    let Some(mut gpu) = gpu(options).filter(|gpu| gpu.adapter().is_software) else { return };
-    let mut film = job().new_film();
-    let error = gpu.accumulate(&job(), 0..SAMPLES, &mut film, &go_on()).unwrap_err();
-    assert!(matches!(error, RenderError::Backend { backend: "gpu", .. }), "{error}");
-    assert!(error.to_string().contains("has not responded"), "{error}");
-    assert!(film == job().new_film());
-}
