@@ -90,6 +90,12 @@ const UNKNOWN: [(&str, &str); 12] = [
     ("truncated", "lambertian-gamma"),
 ];
 
+/// Samples per pixel of right pictures.
+const SAMPLES: [u32; 12] = [4, 5, 8, 10, 16, 25, 32, 50, 80, 100, 200, 500];
+
+/// Sections whose pictures edition 3 has, too.
+const EDITION_3: [&str; 3] = ["lambertian-gamma", "metal-fuzzy", "hollow-glass"];
+
 const SIZE: [u32; 2] = [240, 135];
 
 /// The answers for planted mistakes, with `--stage` or without.
@@ -107,10 +113,13 @@ fn main() -> anyhow::Result<()> {
     let mut tallies = [Tally::default(), Tally::default()];
     let mut all = 0;
     println!("| mistake | stage | with --stage | without |\n|---|---|---|---|");
-    for (mistake, stage) in PLANTED.into_iter().chain(UNKNOWN).filter(|(mistake, _)| is_wanted(mistake)) {
-        let mine = planted(stage, mistake, 80, 1);
+    let third = PLANTED.into_iter().filter(|(_, stage)| EDITION_3.contains(stage));
+    let all_cases =
+        PLANTED.into_iter().chain(UNKNOWN).map(|it| (it, false)).chain(third.map(|it| (it, true)));
+    for ((mistake, stage), is_third) in all_cases.filter(|((mistake, _), _)| is_wanted(mistake)) {
+        let mine = planted(stage, mistake, is_third, 80, 1);
         all += 1;
-        let mut row = format!("| {mistake} | {stage} |");
+        let mut row = format!("| {mistake} | {stage}{} |", if is_third { ", edition 3" } else { "" });
         for (tally, given) in tallies.iter_mut().zip([Some(stage), None]) {
             let (found, took) = found(&mine, given, mistake)?;
             tally.seconds += took;
@@ -143,13 +152,15 @@ fn main() -> anyhow::Result<()> {
     }
 
     let (mut wrong, mut pictures) = (Vec::new(), 0);
-    for stage in book::STAGES {
-        for (samples, seed) in [(4, 11), (10, 12), (80, 13)] {
-            let mine = planted(stage, "", samples, seed);
+    for (seed, samples) in (11..).zip(SAMPLES) {
+        for (stage, is_third) in
+            book::STAGES.into_iter().map(|it| (it, false)).chain(EDITION_3.map(|it| (it, true)))
+        {
+            let mine = planted(stage, "", is_third, samples, seed);
             pictures += 1;
             for given in [Some(stage), None] {
                 let (found, _) = found(&mine, given, "")?;
-                if found != "right" {
+                if !["right", "edition-scene", "edition-camera", "edition-fuzz"].contains(&found.as_str()) {
                     wrong.push(format!("{stage} ({given:?}), {samples} samples, seed {seed}: {found}"));
                 }
             }
@@ -163,9 +174,10 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-fn planted(stage: &'static str, mistake: &'static str, samples: u32, seed: u64) -> Mine {
+fn planted(stage: &'static str, mistake: &'static str, is_third: bool, samples: u32, seed: u64) -> Mine {
     let [width, height] = SIZE;
-    let picture = |mistake| Book::new(stage, mistake).render(width, height, samples, seed);
+    let program = if is_third { Book::of_edition_3 } else { Book::new };
+    let picture = |mistake| program(stage, mistake).render(width, height, samples, seed);
     let shown = picture(mistake);
     assert!(mistake.is_empty() || shown != picture(""), "{mistake} does not change {stage}");
     Mine::of_bytes(shown, SIZE)

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 /// Deviations by which what is left may exceed noise. Of right pictures none exceeded 7, and of wrong ones none stayed below
 /// 9.
-const SCORE_LIMIT: f64 = 8.0;
+pub const SCORE_LIMIT: f64 = 8.0;
 
 /// Sides of the blocks, pixels.
 const SIDES: [usize; 4] = [4, 8, 16, 32];
@@ -23,6 +23,9 @@ const DIFFERS: f64 = 40.0;
 
 /// The most that a single block counts, in squared deviations: rare paths are not in every render.
 const MOST: f64 = 40.0;
+
+/// The most of a block's excess that counts, in squared bytes.
+const EXCESS_MOST: f64 = 10_000.0;
 
 /// Bytes by which the mean of a block may be off.
 const TOLERANCE: f64 = 0.03;
@@ -257,7 +260,7 @@ fn blocks(
                 }
                 let noise = noise + (TOLERANCE.max(seen.tolerance) * known).powi(2);
                 sums.squares += (sum * sum / noise).min(MOST);
-                sums.excess += (sum * sum - noise) / (known * known);
+                sums.excess += ((sum * sum - noise) / (known * known)).min(EXCESS_MOST);
                 sums.count += 1.0;
                 all += sum * sum / noise;
             }

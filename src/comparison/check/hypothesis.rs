@@ -69,8 +69,6 @@ pub enum What {
     Albedo(usize, usize),
     Fuzz(usize),
     Index(usize),
-    /// The index of all glass; what is air in glass has the inverse.
-    Glass,
     /// Of the bottom (0) or the top (1) of the sky.
     Sky(usize, usize),
     /// Width (0) or height (1) of the viewport, as a factor.

@@ -2,43 +2,65 @@
 //! number explains it.
 
 use super::Mine;
-use super::fit::{Compared, Fit};
-use super::hypothesis::{Added, Hypothesis, Mistake, Rendered, Studio, What};
+use super::fit::{Compared, Fit, SCORE_LIMIT};
+use super::hypothesis::{Added, Hypothesis, Mistake, Rendered, Studio};
 use super::mask::{enlarged, grown};
 use super::mistakes::applying_to;
 use super::noise::{altered, is_shared};
-use super::numbers::{candidates, finished};
+use super::numbers::{Solver, Start, finished};
 use super::random::{common, complete, fixed};
 use super::screen::{Screen, small};
 use super::written::{Seen, Written, reduced};
 use crate::stages::Stage;
 use anyhow::{Context, Result, ensure};
+use std::collections::HashSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Samples per pixel of a picture in full size, by the program's own tracer and by the plain one.
+/// Samples per pixel of a picture in full size, by the program's own tracer and by the plain one; and those of the first look
+/// at a picture.
 const FINE: [u64; 2] = [256, 64];
+const QUICK: [u64; 2] = [32, 16];
+
+/// After the first look, what scores more than this is far off, and what scores more than this no number brings near.
+const FAR_OFF: f64 = 60.0;
+const HOPELESS: f64 = 500.0;
 
 /// Width of the small pictures, pixels, and their samples per pixel by each tracer.
-const SMALL_WIDTH: u32 = 80;
-const SMALL: [u64; 2] = [16, 4];
+const SMALL_WIDTH: u32 = 40;
+const SMALL: [u64; 2] = [64, 16];
 
-/// Hypotheses that are compared in full size: written otherwise, and with mistakes.
-const COMPARED: [usize; 2] = [6, 8];
+/// Width of the pictures that tell which pixels depend on something.
+const MASK_WIDTH: u32 = 80;
+
+/// Bases on which numbers are tried, and how many of them may be wrong at once.
+const NUMBERED: usize = 2;
+const NUMBERS: usize = 3;
+
+/// Right pictures that are compared in full size, mistakes that are tried on better small pictures, and of these in full size.
+const COMPARED: [usize; 3] = [6, 20, 7];
+
+/// Samples per pixel of a mistake on a small picture: of each, and of those that are near.
+const SCREENED: [u64; 2] = [8, 64];
 
 /// Mean square of the blocks' means, in bytes, below which a mistake may only show in single pixels.
 const FINE_MOST: f64 = 4.0;
 
-/// Bases on which mistakes are tried, where one is near; and those on which the plain tracer renders them, too.
-const BASES: usize = 2;
-const PLAIN: usize = 3;
+/// Bases on which mistakes are tried.
+const BASES: usize = 6;
 
 /// Root mean square difference below which a base is near, displayed values, and how much farther another may be.
 const FOUND: f64 = 0.03;
 const NEAR: f64 = 0.02;
 
+/// The most that a value counts, in squared displayed values.
+const ROUGH_MOST: f64 = 0.01;
+
 /// Mean square of the blocks' means, in bytes, above which the levels of bytes do not matter, and nothing is explained.
 const FAR: f64 = 100.0;
+
+/// Share of differing blocks from which on a picture may be one of the random scene.
+const RANDOM_LEAST: f64 = 0.5;
 
 /// A guess must leave less than this share of what differs.
 const EXPLAINED: f64 = 0.5;
@@ -99,20 +121,23 @@ pub fn judge(
         Some(stage) => vec![stage],
         None => Stage::walk().filter(|stage| !stage.setup.has_random_spheres).collect(),
     };
-    let found = Search { mine, studio: Studio::new(stop)?, known: Vec::new(), say }.judged(&stages, true)?;
-    if found.is_settled() || stage.is_some() {
+    let mut search = Search { mine, studio: Studio::new(stop)?, known: Vec::new(), say };
+    let (found, bases) = search.judged(&stages)?;
+    if found.is_settled() {
         return Ok(found);
     }
-    for stage in Stage::walk().filter(|stage| stage.setup.has_random_spheres) {
-        let last = judge_random(mine, stage, stop, say, false)?;
-        if last.is_sure {
-            return Ok(last);
+    if stage.is_none() && found.right.fit.differing > RANDOM_LEAST {
+        for stage in Stage::walk().filter(|stage| stage.setup.has_random_spheres) {
+            let last = judge_random(mine, stage, stop, search.say, false)?;
+            if last.is_sure {
+                return Ok(last);
+            }
         }
     }
-    Ok(found)
+    search.wrong(found.right, &bases)
 }
 
-/// Judges a picture of a stage whose small spheres each program places elsewhere.
+/// Judges a picture of a stage whose small spheres each program places elsewhere; mistakes are only tried if `is_thorough`.
 fn judge_random(
     mine: &Mine,
     stage: &'static Stage,
@@ -122,9 +147,12 @@ fn judge_random(
 ) -> Result<Finding> {
     say(format!("looking for what all pictures of {} {} have in common", stage.section, stage.title));
     let mut studio = Studio::new(stop)?;
-    let fixed = fixed(mine, stage, &mut studio, factor([mine.width, mine.height]))?;
+    let fixed = fixed(mine, stage, &mut studio, factor([mine.width, mine.height], MASK_WIDTH))?;
     let mut search = Search { mine: &fixed, studio, known: Vec::new(), say };
-    let mut found = search.judged(&[stage], is_thorough)?;
+    let (mut found, bases) = search.judged(&[stage])?;
+    if is_thorough && !found.is_settled() {
+        found = search.wrong(found.right, &bases)?;
+    }
     complete(&mut found.right, &fixed, &mut search.studio)?;
     found.ignored.clone_from(&fixed.ignored);
     Ok(found)
@@ -133,46 +161,41 @@ fn judge_random(
 struct Search<'a> {
     mine: &'a Mine,
     studio: Studio<'a>,
-    /// Pictures in full size.
-    known: Vec<(Hypothesis, Rendered)>,
+    /// Right pictures in full size, and whether each is a first look.
+    known: Vec<(Hypothesis, bool, Rendered)>,
     say: &'a mut dyn FnMut(String),
 }
 
 impl Search<'_> {
-    /// Judges a picture of one of these stages; mistakes are only tried if `is_thorough`.
-    fn judged(&mut self, stages: &[&'static Stage], is_thorough: bool) -> Result<Finding> {
+    /// Compares with the right pictures of these stages, and those that are only written otherwise. Returns the bases on which
+    /// mistakes are tried if none of them explains the picture.
+    fn judged(&mut self, stages: &[&'static Stage]) -> Result<(Finding, Vec<Hypothesis>)> {
         let ranked = self.ranked(stages)?;
         let distance = |misfit: f64| misfit.max(0.0).sqrt();
         let least = ranked.first().map_or(f64::INFINITY, |(misfit, _)| distance(*misfit));
         let is_near = least < FOUND;
         let limit = if is_near { 1.5 * least + NEAR } else { least };
         let near = || ranked.iter().filter(|(misfit, _)| distance(*misfit) <= limit).map(|(_, it)| it);
-        let mut rights: Vec<(Compared, &Hypothesis)> = Vec::new();
+        let mut rights: Vec<(Compared, Hypothesis)> = Vec::new();
         for hypothesis in near().filter(|it| it.is_right()).take(COMPARED[0]) {
             let stage = hypothesis.stage;
             (self.say)(format!("comparing with {} {}", stage.section, stage.title));
-            let found = self.with_levels(hypothesis)?;
+            let found = self.compared(hypothesis)?;
             if found.fit.is_enough() {
-                return Ok(self.finding(found, None, Vec::new()));
+                return Ok((self.finding(found, None, Vec::new()), Vec::new()));
             }
-            rights.push((found, hypothesis));
+            rights.push((found, hypothesis.clone()));
         }
         // An edition must be nearer than the book.
-        let key = |it: &Compared| it.fit.excess * if it.hypothesis.rows.is_empty() { 1.0 } else { 1.5 };
+        let key = |it: &Compared| it.fit.differing * if it.hypothesis.rows.is_empty() { 1.0 } else { 1.2 };
         rights.sort_by(|(a, _), (b, _)| key(a).total_cmp(&key(b)));
-        // Mistakes are made on the way to the book's picture, and not on that of an exercise.
-        let mut others: Vec<Hypothesis> = Vec::new();
-        for (_, hypothesis) in &rights {
-            let book = ranked.iter().find(|(_, it)| it.stage.id == hypothesis.stage.id && it.rows.is_empty());
-            others.extend(book.filter(|_| !is_simple(hypothesis)).map(|(_, book)| book.clone()));
-            others.push((*hypothesis).clone());
-        }
-        others.dedup_by(|a, b| a.stage.id == b.stage.id && a.is_traced_as(b));
+        // As they were ranked, since a mistake may look like other levels of bytes.
+        let nearest: Vec<Hypothesis> = rights.iter().map(|(_, it)| it.clone()).collect();
         let right = match rights.into_iter().next() {
             Some((right, _)) => right,
             None => {
                 let nearest = ranked.iter().find(|(_, it)| it.is_right());
-                self.with_levels(&nearest.context("there is no stage to compare with")?.1)?
+                self.compared(&nearest.context("there is no stage to compare with")?.1)?
             }
         };
         let mut enough = Vec::new();
@@ -180,24 +203,17 @@ impl Search<'_> {
             if hypothesis.written.wraps && !self.has_wrapped(&right) {
                 continue;
             }
-            let found = self.with_levels(hypothesis)?;
+            let found = self.compared(hypothesis)?;
             if found.fit.is_enough() {
                 enough.push(found);
             }
         }
         if let Some(finding) = self.explained(&right, enough) {
-            return Ok(finding);
+            return Ok((finding, Vec::new()));
         }
-        if !is_thorough {
-            return Ok(self.finding(right, None, Vec::new()));
-        }
-        if is_near {
-            others.truncate(BASES);
-            return self.wrong(right, &others);
-        }
-        let bases = bases(&ranked, stages.len());
-        let right = self.compared(&bases[0])?;
-        self.wrong(right, &bases)
+        let bases = bases(&nearest, &ranked);
+        let right = if is_near { right } else { self.compared(&bases[0])? };
+        Ok((self.finding(right, None, Vec::new()), bases))
     }
 
     /// Whether the reader's picture is black where ours is white.
@@ -237,57 +253,35 @@ impl Search<'_> {
 
     /// Tries mistakes and numbers on these bases, of which `right` is the first.
     fn wrong(&mut self, right: Compared, bases: &[Hypothesis]) -> Result<Finding> {
-        let factor = factor(right.hypothesis.size());
-        let (mut screened, mut fine) = (Vec::new(), Vec::new());
-        for (rank, base) in bases.iter().enumerate() {
-            let stage = base.stage;
-            (self.say)(format!("trying the mistakes of {} {}", stage.section, stage.title));
-            let seen = self.seen(&base.written, None);
-            let mut screen = Screen::new(&mut self.studio, base, &seen, factor, right.fit.samples)?;
-            let nothing = screen.excess(base)?;
-            for mistake in applying_to(&base.recipe).filter(|it| !it.is_right && it.id != SHARED) {
-                for hypothesis in mistake.pictures(base) {
-                    let is_on_right = rank == 0 && right.fit.excess < FINE_MOST;
-                    if hypothesis.added.is_some() || hypothesis.is_fine {
-                        if rank == 0 && (is_on_right || hypothesis.added.is_some()) {
-                            fine.push(hypothesis);
-                        }
-                        continue;
-                    }
-                    let is_plain = hypothesis.steps.is_some() && base.steps.is_none();
-                    if hypothesis.is_traced_as(base)
-                        || hypothesis.written.order.exchanges_sides()
-                        || is_plain && rank >= PLAIN
-                    {
-                        continue;
-                    }
-                    let excess = screen.excess(&hypothesis)?;
-                    if excess < EXPLAINED * nothing.max(0.0) + FINE_MOST {
-                        screened.push((excess, hypothesis));
-                    }
-                }
-            }
-        }
-        // Of those that are as near, what differs less from the book comes first.
-        let key = |(excess, it): &(f64, Hypothesis)| ((excess.max(0.0) / FINE_MOST) as u64, it.rows.len());
-        screened.sort_by(|a, b| key(a).cmp(&key(b)).then(a.0.total_cmp(&b.0)));
-        let limit = 1.5 * screened.first().map_or(0.0, |(excess, _)| excess.max(0.0)) + FINE_MOST;
-        screened.retain(|(excess, _)| *excess < limit);
-        screened.truncate(COMPARED[1]);
-        let mut compared = Vec::new();
-        for hypothesis in screened.into_iter().map(|(_, hypothesis)| hypothesis).chain(fine) {
-            let named = hypothesis.named().map_or("a mistake", |named| named.title);
-            (self.say)(format!("comparing: {named}"));
-            compared.push(self.with_levels(&hypothesis)?);
-        }
+        let nearest = bases.iter().take_while(|base| base.stage.id == bases[0].stage.id).count();
+        let (mut compared, mut searches) = (Vec::new(), Vec::new());
         let enough =
             |compared: &[Compared]| compared.iter().filter(|it| it.fit.is_enough()).cloned().collect();
-        if let Some(finding) = self.explained(&right, enough(&compared)) {
-            return Ok(finding);
+        for bases in [&bases[..nearest], &bases[nearest..]] {
+            let screens = self.mistakes(&right, bases, &mut compared)?;
+            if let Some(finding) = self.explained(&right, enough(&compared)) {
+                return Ok(finding);
+            }
+            // Others than the book must be nearer.
+            let key = |(base, (nothing, _)): &(&Hypothesis, (f64, Screen))| {
+                nothing * if base.rows.is_empty() { 1.0 } else { 1.5 }
+            };
+            let mut order: Vec<_> = bases.iter().zip(screens).collect();
+            order.sort_by(|a, b| key(a).total_cmp(&key(b)));
+            for (base, (_, screen)) in order.into_iter().take(NUMBERED) {
+                let mut solver = Solver { screen };
+                let mut start = solver.start(&mut self.studio)?;
+                self.numbers(base, &mut start, &mut solver, &mut compared)?;
+                searches.push((base, start, solver));
+            }
+            if let Some(finding) = self.explained(&right, enough(&compared)) {
+                return Ok(finding);
+            }
         }
-        let tried = if right.fit.excess < 10.0 * FAR { BASES } else { 1 };
-        for base in bases.iter().take(tried) {
-            self.numbers(base, factor, right.fit.samples, &mut compared)?;
+        for _ in 1..NUMBERS {
+            for (base, best, solver) in searches.iter_mut().take(NUMBERED) {
+                self.numbers(base, best, solver, &mut compared)?;
+            }
             if let Some(finding) = self.explained(&right, enough(&compared)) {
                 return Ok(finding);
             }
@@ -311,47 +305,109 @@ impl Search<'_> {
         Ok(finding)
     }
 
-    /// Tries other numbers on a base: single ones, and if none is enough, those that are typed together.
+    /// Tries the mistakes that can be made on the way to these bases. Returns what is left of each base on a small picture.
+    fn mistakes(
+        &mut self,
+        right: &Compared,
+        bases: &[Hypothesis],
+        compared: &mut Vec<Compared>,
+    ) -> Result<Vec<(f64, Screen)>> {
+        let factor = factor(right.hypothesis.size(), SMALL_WIDTH);
+        let (mut screens, mut screened, mut whole) = (Vec::new(), Vec::new(), Vec::new());
+        for (rank, base) in bases.iter().enumerate() {
+            let (stage, is_nearest) = (base.stage, base.stage.id == right.hypothesis.stage.id);
+            (self.say)(format!("trying the mistakes of {} {}", stage.section, stage.title));
+            let seen = self.seen(&base.written, None);
+            let mut screen = Screen::new(&mut self.studio, base, &seen, factor, right.fit.samples)?;
+            let nothing = screen.excess(&mut self.studio, base, SCREENED[1])?.max(0.0);
+            for mistake in applying_to(&base.recipe).filter(|it| !it.is_right && it.id != SHARED) {
+                for hypothesis in mistake.pictures(base) {
+                    let needs_all = hypothesis.added.is_some() || hypothesis.written.blackens;
+                    if needs_all || hypothesis.is_fine {
+                        if is_nearest && (needs_all || rank == 0 && right.fit.excess < FINE_MOST) {
+                            whole.push(hypothesis);
+                        }
+                    } else if !hypothesis.is_traced_as(base) && !hypothesis.written.order.exchanges_sides() {
+                        let excess = screen.excess(&mut self.studio, &hypothesis, SCREENED[0])?;
+                        let is_alike = (excess - nothing).abs() < 0.1 * nothing.max(0.1);
+                        if !is_alike && excess < EXPLAINED * nothing + 2.0 * FINE_MOST {
+                            screened.push((excess, rank, hypothesis));
+                        }
+                    }
+                }
+            }
+            screens.push((nothing, screen));
+        }
+        screened.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
+        let least = screened.first().map_or(0.0, |(excess, ..)| excess.max(0.0));
+        screened.retain(|(excess, ..)| *excess < 3.0 * least + 4.0 * FINE_MOST);
+        screened.truncate(COMPARED[1]);
+        let mut near = Vec::new();
+        for (_, rank, hypothesis) in screened {
+            let (nothing, screen) = &mut screens[rank];
+            let excess = screen.excess(&mut self.studio, &hypothesis, SCREENED[1])?;
+            if excess < EXPLAINED * *nothing + FINE_MOST {
+                near.push((excess, hypothesis));
+            }
+        }
+        // Of those that are as near, what differs less from the book comes first.
+        let key = |(excess, it): &(f64, Hypothesis)| ((excess.max(0.0) / FINE_MOST) as u64, it.rows.len());
+        near.sort_by(|a, b| key(a).cmp(&key(b)).then(a.0.total_cmp(&b.0)));
+        let limit = 1.5 * near.first().map_or(0.0, |(excess, _)| excess.max(0.0)) + 3.0 * FINE_MOST;
+        near.retain(|(excess, _)| *excess < limit);
+        near.dedup_by(|(a, _), (b, _)| a == b);
+        near.truncate(COMPARED[2]);
+        let mut found = Vec::new();
+        for hypothesis in near.into_iter().map(|(_, hypothesis)| hypothesis).chain(whole) {
+            let named = hypothesis.named().map_or("a mistake", |named| named.title);
+            (self.say)(format!("comparing: {named}"));
+            found.push(self.compared_by(&hypothesis, true)?);
+        }
+        self.refined(&mut found)?;
+        compared.append(&mut found);
+        Ok(screens)
+    }
+
+    /// Looks closer at those that fit best.
+    fn refined(&mut self, compared: &mut [Compared]) -> Result<()> {
+        let least = compared.iter().map(|it| it.fit.score).fold(f64::INFINITY, f64::min);
+        for it in compared.iter_mut().filter(|it| it.fit.score < FAR_OFF.min(3.0 * least.max(SCORE_LIMIT))) {
+            *it = self.compared_by(&it.hypothesis, false)?;
+        }
+        Ok(())
+    }
+
+    /// Tries one number more than `best` has.
     fn numbers(
         &mut self,
         base: &Hypothesis,
-        factor: u32,
-        samples: Option<f64>,
+        best: &mut Start,
+        solver: &mut Solver,
         compared: &mut Vec<Compared>,
     ) -> Result<()> {
         let stage = base.stage;
         (self.say)(format!("trying the numbers of {} {}", stage.section, stage.title));
         let seen = self.seen(&base.written, None);
-        let mut screen = Screen::new(&mut self.studio, base, &seen, factor, samples)?;
-        let kinds = candidates(&mut screen)?;
-        for kind in kinds {
-            for (group, start) in kind {
-                let words = group.iter().map(|what| what.words(what.of(&start), base)).collect::<Vec<_>>();
-                (self.say)(format!("comparing: {}", words.join(", ")));
-                compared.push(self.with_numbers(&seen, base, &group, start)?);
-            }
-            if compared.iter().any(|it| it.fit.is_enough()) {
-                break;
-            }
+        let more = solver.one_more(&mut self.studio, best)?;
+        for start in &more {
+            compared.push(self.with_numbers(&seen, base, start)?);
+        }
+        if let Some(next) = more.into_iter().next() {
+            *best = next;
         }
         Ok(())
     }
 
-    fn with_numbers(
-        &mut self,
-        seen: &Seen,
-        base: &Hypothesis,
-        group: &[What],
-        start: Hypothesis,
-    ) -> Result<Compared> {
-        let render = &mut |of: &Hypothesis, is_full: bool| {
-            if is_full {
-                return self.rendered(of);
-            }
-            self.studio.render(&of.fast(), 1, FINE[0] / 8, None)
-        };
-        let (hypothesis, rendered, fit) = finished(render, seen, base, group, start)?;
-        Ok(Compared { hypothesis, rendered, fit })
+    fn with_numbers(&mut self, seen: &Seen, base: &Hypothesis, start: &Start) -> Result<Compared> {
+        let words = start.whats.iter().map(|what| what.words(what.of(&start.at), base)).collect::<Vec<_>>();
+        (self.say)(format!("comparing: {}", words.join(", ")));
+        let here = self.compared_by(&start.at, true)?;
+        if here.fit.score > HOPELESS {
+            return Ok(Compared { hypothesis: start.named(base, None), ..here });
+        }
+        let mut render = |of: &Hypothesis| self.studio.render(&of.fast(), 1, QUICK[0], None);
+        let finished = finished(start, base, seen, &here, &mut render)?;
+        self.compared(&finished)
     }
 
     /// The reader's picture, written in this way; `expected` tells which zeros are whites that wrapped around.
@@ -359,87 +415,89 @@ impl Search<'_> {
         Seen::of(self.mine, written, |pixel, channel| expected.map_or(0.0, |pixels| pixels[pixel][channel]))
     }
 
-    /// A hypothesis in full size.
+    /// A hypothesis in full size, with the levels of bytes that fit best.
     fn compared(&mut self, hypothesis: &Hypothesis) -> Result<Compared> {
-        let mut hypothesis = hypothesis.clone();
-        let mut rendered = self.rendered(&hypothesis)?;
-        let mean = hypothesis.written.wraps.then(|| rendered.mean());
-        let mut seen = self.seen(&hypothesis.written, mean.as_deref());
-        seen.tolerance = seen.tolerance.max(hypothesis.tolerance());
-        if let Some(added) = hypothesis.added {
-            (rendered, hypothesis.note) = with_added(&seen, &hypothesis.written, rendered, added);
-        }
-        let fit = Fit::new(&seen, &hypothesis.written, &rendered);
-        Ok(Compared { hypothesis, rendered, fit })
+        let quick = self.compared_by(hypothesis, true)?;
+        if quick.fit.score > FAR_OFF { Ok(quick) } else { self.compared_by(&quick.hypothesis, false) }
     }
 
-    fn rendered(&mut self, of: &Hypothesis) -> Result<Rendered> {
-        let is_same =
-            |(known, _): &&(Hypothesis, Rendered)| known.stage.id == of.stage.id && known.is_traced_as(of);
-        if let Some((_, rendered)) = self.known.iter().find(is_same) {
+    fn compared_by(&mut self, hypothesis: &Hypothesis, is_quick: bool) -> Result<Compared> {
+        let mut hypothesis = hypothesis.clone();
+        let mut rendered = self.rendered(&hypothesis, is_quick)?;
+        let mean = hypothesis.written.wraps.then(|| rendered.mean());
+        let fit = |hypothesis: &Hypothesis, rendered: &Rendered| {
+            let mut seen = self.seen(&hypothesis.written, mean.as_deref());
+            seen.tolerance = seen.tolerance.max(hypothesis.tolerance());
+            Fit::new(&seen, &hypothesis.written, rendered)
+        };
+        if let Some(added) = hypothesis.added {
+            let seen = self.seen(&hypothesis.written, None);
+            (rendered, hypothesis.note) = with_added(&seen, &hypothesis.written, rendered, added);
+        }
+        let mut best = Compared { fit: fit(&hypothesis, &rendered), hypothesis, rendered };
+        if best.fit.excess > FAR || best.hypothesis.written.wraps {
+            return Ok(best);
+        }
+        // As in the book's first sections.
+        let mut early = best.hypothesis.clone();
+        early.written.levels = 255.999;
+        let rows = applying_to(&early.recipe).filter(|it| it.is_right);
+        let others: Vec<_> = rows.flat_map(|it| it.pictures(&best.hypothesis)).collect();
+        for other in [early].into_iter().chain(others) {
+            let is_level = is_written_otherwise(&other, &best.hypothesis)
+                && other.written.curve == best.hypothesis.written.curve;
+            if is_level && !best.fit.is_enough() {
+                let fit = fit(&other, &best.rendered);
+                if fit.score < best.fit.score {
+                    best = Compared { hypothesis: other, fit, ..best };
+                }
+            }
+        }
+        Ok(best)
+    }
+
+    fn rendered(&mut self, of: &Hypothesis, is_quick: bool) -> Result<Rendered> {
+        let is_same = |(known, known_is_quick, _): &&(Hypothesis, bool, Rendered)| {
+            *known_is_quick == is_quick && known.stage.id == of.stage.id && known.is_traced_as(of)
+        };
+        if let Some((.., rendered)) = self.known.iter().find(is_same) {
             return Ok(rendered.clone());
         }
-        let rendered = self.traced(of)?;
-        if of.numbers.is_empty() && of.rows.iter().all(|row| row.is_right) {
-            self.known.push((of.clone(), rendered.clone()));
+        let rendered = self.traced(of, if is_quick { QUICK } else { FINE })?;
+        if of.is_right() {
+            self.known.push((of.clone(), is_quick, rendered.clone()));
         }
         Ok(rendered)
     }
 
-    fn traced(&mut self, of: &Hypothesis) -> Result<Rendered> {
+    fn traced(&mut self, of: &Hypothesis, [own, plain]: [u64; 2]) -> Result<Rendered> {
         if of.steps.is_none() || of.is_exact() {
-            return self.studio.render(of, 1, FINE[0], None);
+            return self.studio.render(of, 1, own, None);
         }
         let mut fast = of.fast();
-        let whole = self.studio.render(&fast, 1, FINE[0], None)?;
+        let whole = self.studio.render(&fast, 1, own, None)?;
         // The plain tracer is slow: it renders only what its steps change.
-        let factor = factor(of.size());
+        let factor = factor(of.size(), MASK_WIDTH);
         fast.plain();
-        let [own, book] =
-            [of, &fast].map(|it| self.studio.render(it, factor, 4 * SMALL[1], None).map(|it| it.halves));
-        let (own, book) = (own?, book?);
+        let [with, without] =
+            [of, &fast].map(|it| self.studio.render(it, factor, SMALL[1], None).map(|it| it.halves));
+        let (with, without) = (with?, without?);
         let size = of.size().map(|side| side as usize);
-        let is_changed = |pixel: usize| (0..2).any(|half| own[half][pixel] != book[half][pixel]);
-        let changed: Vec<bool> = (0..own[0].len()).map(is_changed).collect();
+        let is_changed = |pixel: usize| (0..2).any(|half| with[half][pixel] != without[half][pixel]);
+        let changed: Vec<bool> = (0..with[0].len()).map(is_changed).collect();
         let small = size.map(|side| side / factor as usize);
         let mut mask = enlarged(&grown(&changed, small), size, factor as usize);
         if let Some(ignored) = &self.mine.ignored {
             mask.iter_mut().zip(ignored.iter()).for_each(|(is_traced, is_ignored)| *is_traced &= !is_ignored);
         }
-        Ok(whole.under(&self.studio.render(of, 1, FINE[1], Some(&mask))?))
-    }
-
-    /// A hypothesis in full size, with the levels of bytes that fit best.
-    fn with_levels(&mut self, hypothesis: &Hypothesis) -> Result<Compared> {
-        let mut best = self.compared(hypothesis)?;
-        if best.fit.excess > FAR || hypothesis.written.wraps {
-            return Ok(best);
-        }
-        // As in the book's first sections.
-        let mut early = hypothesis.clone();
-        early.written.levels = 255.999;
-        let rows = applying_to(&hypothesis.recipe).filter(|it| it.is_right);
-        for other in [early].into_iter().chain(rows.flat_map(|it| it.pictures(hypothesis))) {
-            let is_level =
-                is_written_otherwise(&other, hypothesis) && other.written.curve == hypothesis.written.curve;
-            if !is_level || best.fit.is_enough() {
-                continue;
-            }
-            let mut seen = self.seen(&other.written, None);
-            seen.tolerance = seen.tolerance.max(hypothesis.tolerance());
-            let fit = Fit::new(&seen, &other.written, &best.rendered);
-            if fit.score < best.fit.score {
-                best = Compared { hypothesis: other, rendered: best.rendered, fit };
-            }
-        }
-        Ok(best)
+        Ok(whole.under(&self.studio.render(of, 1, plain, Some(&mask))?))
     }
 
     /// Right pictures of these stages, and pictures that are only written otherwise, the most similar first.
     fn ranked(&mut self, stages: &[&'static Stage]) -> Result<Vec<(f64, Hypothesis)>> {
         (self.say)("comparing with all sections and editions".to_owned());
         let size = [self.mine.width, self.mine.height];
-        let factor = factor(size);
+        let factor = factor(size, SMALL_WIDTH);
         let mut known: Vec<(Written, Vec<[f64; 3]>)> = Vec::new();
         let mut ranked = Vec::new();
         for stage in stages {
@@ -501,6 +559,9 @@ impl Search<'_> {
         let bin = |misfit: &f64| (misfit.max(0.0).sqrt() * 500.0) as u64;
         let key = |it: &Hypothesis| (it.rows.len(), it.stage.setup.width.abs_diff(size[0]));
         ranked.sort_by(|(a, it), (b, other)| bin(a).cmp(&bin(b)).then(key(it).cmp(&key(other))));
+        // All have the same random numbers, so that pictures are equal if their misfits are.
+        let mut known = HashSet::new();
+        ranked.retain(|(misfit, _)| known.insert(misfit.to_bits()));
         Ok(ranked)
     }
 }
@@ -515,33 +576,28 @@ fn is_same(a: &Hypothesis, b: &Hypothesis) -> bool {
     id(a) == id(b) && numbers(a) == numbers(b)
 }
 
-/// The right pictures on which mistakes are tried: of the nearest sections that of the book, and that of an edition if it is
-/// nearer.
-fn bases(ranked: &[(f64, Hypothesis)], sections: usize) -> Vec<Hypothesis> {
-    /// How much nearer a picture must be that differs more from the book.
-    const NEARER: f64 = 0.6;
-    let rights: Vec<&(f64, Hypothesis)> = ranked.iter().filter(|(_, it)| it.is_right()).collect();
+/// The right pictures on which mistakes are tried: of each of the nearest sections the nearest one, and that of the book.
+fn bases(nearest: &[Hypothesis], ranked: &[(f64, Hypothesis)]) -> Vec<Hypothesis> {
     let mut bases: Vec<Hypothesis> = Vec::new();
-    let mut stages: Vec<&str> = Vec::new();
-    for (_, nearest) in &rights {
-        let id = nearest.stage.id;
-        if stages.contains(&id) || stages.len() >= sections {
+    let all = nearest.iter().chain(ranked.iter().map(|(_, it)| it).filter(|it| it.is_right()));
+    for it in all.filter(|it| is_simple(it)) {
+        let of_stage = || {
+            ranked.iter().map(|(_, it)| it).filter(|other| other.is_right() && other.stage.id == it.stage.id)
+        };
+        let stages: HashSet<&str> = bases.iter().map(|base| base.stage.id).collect();
+        if stages.contains(it.stage.id) {
             continue;
         }
-        stages.push(id);
-        let of_stage = || rights.iter().filter(|(_, it)| it.stage.id == id);
-        let book = of_stage().find(|(_, it)| it.rows.is_empty());
-        let edition = of_stage().find(|(_, it)| !it.rows.is_empty() && is_simple(it));
-        let other = of_stage().find(|(_, it)| !is_simple(it));
-        let mut limit = f64::INFINITY;
-        let mut own = Vec::new();
-        for (misfit, it) in [book, edition, other].into_iter().flatten() {
-            if *misfit < NEARER * limit || own.len() < 2 && is_simple(it) && stages.len() == 1 {
-                own.insert(if *misfit < NEARER * limit { 0 } else { own.len() }, it.clone());
-                limit = limit.min(*misfit);
+        let scene =
+            of_stage().filter(|other| other.written == it.written).min_by_key(|other| other.rows.len());
+        let book = of_stage().find(|other| other.rows.is_empty());
+        for it in [it].into_iter().chain(scene.into_iter().chain(book).filter(|_| stages.is_empty())) {
+            let is_same =
+                |other: &Hypothesis| other.is_traced_as(it) && other.written.curve == it.written.curve;
+            if bases.len() < BASES && !bases.iter().any(is_same) {
+                bases.push(it.clone());
             }
         }
-        bases.extend(own);
     }
     bases
 }
@@ -567,13 +623,15 @@ fn is_written_otherwise(it: &Hypothesis, base: &Hypothesis) -> bool {
 /// Mean squared difference of small pictures in displayed values, without the noise of ours.
 fn rough(seen: &[[f64; 3]], rendered: &Rendered, most: f64) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
-    let halves = rendered.halves.each_ref().map(|half| half.as_flattened());
-    for (index, value) in seen.as_flattened().iter().enumerate() {
-        let square = (value - halves[0][index].clamp(0.0, most))
-            * (value - halves[1][index].clamp(0.0, most))
-            / (4.0 * value.max(0.02));
+    let mean = rendered.mean();
+    let ours = mean.as_flattened().iter().zip(rendered.error.as_flattened());
+    for (value, (ours, noise)) in seen.as_flattened().iter().zip(ours) {
+        let ours = ours.clamp(0.0, most);
+        let roots = (value.max(0.02).sqrt() + ours.max(0.02).sqrt()).powi(2);
+        let square = ((value - ours).powi(2) - noise) / roots;
         if square.is_finite() {
-            sum += square;
+            // What differs in a part of the picture must not look like another curve of all of it.
+            sum += square.min(ROUGH_MOST);
             count += 1.0;
         }
     }
@@ -620,8 +678,8 @@ pub fn with_added(
 }
 
 /// The factor by which the first pictures are smaller: a common divisor of both sides, if a suitable one exists.
-fn factor([width, height]: [u32; 2]) -> u32 {
-    let wanted = (width / SMALL_WIDTH).max(1);
+fn factor([width, height]: [u32; 2], small: u32) -> u32 {
+    let wanted = (width / small).max(1);
     let divides = |factor: &u32| width.is_multiple_of(*factor) && height.is_multiple_of(*factor);
     (wanted.div_ceil(2)..=2 * wanted)
         .filter(divides)

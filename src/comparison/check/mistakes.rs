@@ -113,7 +113,14 @@ mistakes! {
         WRONG, |it| it.plain().t_max = |_| f64::INFINITY, |it| {
             Arc::make_mut(&mut it.recipe.scene).spheres.reverse();
             it.plain().t_max = |_| f64::INFINITY;
+        }, |it| {
+            Arc::make_mut(&mut it.recipe.scene).spheres.rotate_left(1);
+            it.plain().t_max = |_| f64::INFINITY;
         };
+    "ball-missing", "10.5", "a ball is missing",
+        "add all spheres of the section to the world", |recipe| has_rays(recipe) && recipe.scene.materials.len() > 2,
+        WRONG, |it| without(it, &["left", "bubble", "right"]), |it| without(it, &["left", "bubble"]), |it| without(it, &["right"]),
+        |it| without(it, &["center"]);
     "zero-t-min", "9.3", "rays hit the surface that they start on (shadow acne)",
         "let hits begin at 0.001: `world.hit(r, interval(0.001, infinity), rec)`",
         |recipe| has_bounces(recipe) && recipe.rules.surface != SurfaceRule::Acne && recipe.rules.diffuse != Diffuse::Hemisphere,
@@ -390,6 +397,7 @@ mistakes! {
         |it| {
             it.recipe.rules.dielectric = DielectricLaws::RefractOnly;
             it.plain().inwards = f64::sqrt;
+            it.written.blackens = true;
         };
     "glass-reflects", "11.2", "glass only reflects", "refract unless `ri * sin_theta > 1.0`", has_glass, WRONG,
         |it| {
@@ -430,6 +438,14 @@ const RIGHT: bool = true;
 
 pub fn applying_to(recipe: &Recipe) -> impl Iterator<Item = &'static Mistake> {
     MISTAKES.iter().filter(|mistake| (mistake.applies)(recipe))
+}
+
+/// Takes away the balls of these materials.
+fn without(picture: &mut Hypothesis, names: &[&str]) {
+    picture.note = Some(format!("it seems that you lack: {}", names.join(", ")));
+    let scene = Arc::make_mut(&mut picture.recipe.scene);
+    let materials: Vec<&str> = scene.materials.iter().map(|named| named.name.as_str()).collect();
+    scene.spheres.retain(|sphere| !names.contains(&materials[sphere.material]));
 }
 
 fn swap(picture: &mut Hypothesis, order: [usize; 3]) {

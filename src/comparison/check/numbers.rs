@@ -1,13 +1,13 @@
 //! The numbers of scene and camera: which one was typed wrong? Derivatives of the picture, with the same random numbers on
 //! both sides, tell what each number would change; Gauss-Newton finds its value.
 
-use super::fit::Fit;
-use super::hypothesis::{Hypothesis, Number, Rendered, What};
+use super::fit::Compared;
+use super::hypothesis::{Hypothesis, Number, Rendered, Studio, What};
 use super::mistakes::bubble;
 use super::screen::Screen;
 use super::written::Seen;
 use crate::scene::{Material, Scene, VFOV_LIMITS_DEGREES};
-use anyhow::{Context, Result};
+use anyhow::Result;
 use glam::{DMat4, DVec3, DVec4};
 use std::sync::Arc;
 
@@ -41,37 +41,9 @@ impl What {
                 Material::Dielectric { .. } => all.push(What::Index(index)),
             }
         }
-        if all.iter().filter(|what| matches!(what, What::Index(_))).count() > 1 {
-            all.push(What::Glass);
-        }
         all.extend((0..2).flat_map(|end| (0..3).map(move |c| What::Sky(end, c))));
         all.extend((0..2).flat_map(|axis| [What::Scale(axis), What::Shift(axis)]));
         all
-    }
-
-    /// Groups of numbers that are typed together.
-    fn groups(all: &[What]) -> Vec<Vec<What>> {
-        let of = |is_in: &dyn Fn(&What) -> bool| {
-            all.iter().copied().filter(|what| is_in(what)).collect::<Vec<_>>()
-        };
-        let mut groups: Vec<Vec<What>> = Vec::new();
-        for what in all {
-            groups.push(match *what {
-                What::Albedo(material, 0) => of(&|it| matches!(it, What::Albedo(m, _) if *m == material)),
-                What::Sky(end, 0) => of(&|it| matches!(it, What::Sky(e, _) if *e == end)),
-                What::Center(sphere, 0) => of(&|it| matches!(it, What::Center(s, _) if *s == sphere)),
-                What::Radius(sphere) => {
-                    of(&|it| matches!(it, What::Center(s, _) | What::Radius(s) if *s == sphere))
-                }
-                What::Eye(0) => of(&|it| matches!(it, What::Eye(_))),
-                What::Scale(0) => of(&|it| matches!(it, What::Scale(_) | What::Shift(_))),
-                _ => continue,
-            });
-        }
-        for (index, first) in all.iter().enumerate() {
-            groups.extend(all[index + 1..].iter().map(|second| vec![*first, *second]));
-        }
-        groups
     }
 
     /// Reads the number, or changes it.
@@ -82,22 +54,6 @@ impl What {
                 camera.focus_distance = value;
             }
             return camera.effective_focus_distance();
-        }
-        if let What::Glass = self {
-            let scene = Arc::make_mut(&mut of.recipe.scene);
-            let indices = scene.materials.iter_mut().filter_map(|named| match &mut named.material {
-                Material::Dielectric { refraction_index } => Some(refraction_index),
-                _ => None,
-            });
-            let mut first = 1.5;
-            for index in indices {
-                let is_air = *index < 1.0;
-                first = if is_air { index.recip() } else { *index };
-                if let Some(value) = value {
-                    *index = if is_air { value.recip() } else { value };
-                }
-            }
-            return first;
         }
         let slot = match self {
             What::Eye(axis) => &mut camera.look_from[axis],
@@ -143,7 +99,7 @@ impl What {
     fn reach(self, of: &Hypothesis) -> Reach {
         let is_big = |sphere: usize| of.recipe.scene.spheres[sphere].radius > 50.0;
         let (step, most, limits) = match self {
-            What::Eye(_) | What::Target(_) => (0.02, 1.0, [-1e3, 1e3]),
+            What::Eye(_) | What::Target(_) => (0.02, 0.9, [-1e3, 1e3]),
             What::FieldOfView => (1.0, 60.0, [1.0, VFOV_LIMITS_DEGREES[1] - 1.0]),
             What::DefocusAngle => (0.5, 20.0, [0.0, 90.0]),
             What::FocusDistance => (0.05, 5.0, [0.05, 1e3]),
@@ -152,7 +108,7 @@ impl What {
             What::Radius(_) => (0.01, 0.6, [0.01, 50.0]),
             What::Albedo(..) => (0.04, 1.0, [0.0, 1.0]),
             What::Fuzz(_) => (0.05, 1.0, [0.0, 1.0]),
-            What::Index(_) | What::Glass => (0.03, 1.5, [0.2, 4.0]),
+            What::Index(_) => (0.03, 1.5, [0.2, 4.0]),
             What::Sky(..) => (0.04, 1.0, [0.0, 2.0]),
             What::Scale(_) => (0.01, 2.0, [0.1, 5.0]),
             What::Shift(_) => (0.005, 0.6, [-1.0, 1.0]),
@@ -182,7 +138,6 @@ impl What {
             What::Albedo(m, c) => format!("the {} of {} is {is}", colour(c), of_material(m)),
             What::Fuzz(m) => format!("the fuzz of {} is {is}", of_material(m)),
             What::Index(m) => format!("the refraction index of {} is {is}", of_material(m)),
-            What::Glass => format!("the refraction index of glass is {is}"),
             What::Sky(end, c) => {
                 format!("the {} of the sky's {} colour is {is}", colour(c), ["lower", "upper"][end])
             }
@@ -237,7 +192,6 @@ impl What {
             What::Albedo(material, _) | What::Fuzz(material) | What::Index(material) => {
                 (section, of_material(material))
             }
-            What::Glass => (section, "dielectric(1.50)".to_owned()),
             What::Sky(0, _) => ("4.2", vector("color", scene.sky.bottom)),
             What::Sky(..) => ("4.2", vector("color", scene.sky.top)),
             What::Scale(0) => {
@@ -301,248 +255,243 @@ fn ball(scene: &Scene, sphere: usize) -> String {
     format!("the {} ball", if name == "center" { "middle" } else { name })
 }
 
-/// The solution of `matrix * x = right` for at most four numbers; numbers that change nothing stay.
-fn solved(matrix: &[Vec<f64>], right: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
-    let count = right.len();
-    let (mut all, mut vector) = (DMat4::IDENTITY, DVec4::ZERO);
-    let scale: Vec<f64> = (0..count).map(|index| matrix[index][index].max(1e-300).sqrt()).collect();
-    for i in 0..count {
-        for j in 0..count {
-            let ridge = if i == j { 1.0 + 1e-6 } else { 1.0 };
-            all.col_mut(i)[j] = ridge * matrix[i][j] / (scale[i] * scale[j]);
-        }
-        vector[i] = right[i] / scale[i];
-    }
-    let inverse = all.inverse();
-    let found = inverse * vector;
-    let deviations = (0..count).map(|i| inverse.col(i)[i].max(0.0).sqrt() / scale[i]).collect();
-    found.is_finite().then(|| ((0..count).map(|i| found[i] / scale[i]).collect(), deviations))
+/// One step of a linear fit.
+struct Step {
+    /// By how much each number moves, and one standard deviation of it.
+    by: Vec<f64>,
+    deviations: Vec<f64>,
+    /// Share of the squared rest that the step explains.
+    gain: f64,
 }
 
-/// A hypothesis with these numbers, each within its limits.
-fn with(base: &Hypothesis, whats: &[What], values: &[f64]) -> Hypothesis {
-    let mut changed = base.clone();
-    for (what, value) in whats.iter().zip(values) {
-        let Reach { limits: [low, high], .. } = what.reach(base);
-        what.access(&mut changed, Some(value.clamp(low, high)));
-    }
-    changed
-}
-
-/// The pictures on both sides of a number, and their distance.
-fn sides(at: &Hypothesis, what: What) -> ([Hypothesis; 2], f64) {
-    let Reach { step, limits: [low, high], .. } = what.reach(at);
-    let value = what.of(at);
-    let ends = [value - step, value + step].map(|end| end.clamp(low, high));
-    (ends.map(|end| with(at, &[what], &[end])), ends[1] - ends[0])
-}
-
-/// Numbers, and the hypothesis that has them.
-pub type Start = (Vec<What>, Hypothesis);
-
-/// Numbers that may explain what is left of a base, each as a hypothesis, the likeliest first; those that are typed together
-/// come after the single ones.
-pub fn candidates(screen: &mut Screen) -> Result<[Vec<Start>; 2]> {
-    /// A step of a number must explain at least this share of what is left.
-    const LEAST: f64 = 0.01;
-    const TRIED: [usize; 2] = [8, 8];
-    const KEPT: usize = 3;
-    /// A solution must leave less than this share of what is left.
-    const MOST: f64 = 0.5;
-    let base = screen.base.clone();
-    let all = What::all(&base);
-    let weights = screen.weights(true);
-    let rest = screen.rest(&base, None)?;
-    let near = screen.weights(false);
-    let start: f64 = rest.iter().zip(&near).map(|(rest, weight)| weight * rest * rest).sum();
-    let mut derivatives = Vec::new();
-    for what in &all {
-        derivatives.push(derivative(screen, &base, *what)?);
-    }
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).zip(&weights).map(|((a, b), w)| w * a * b).sum::<f64>();
-    let square = dot(&rest, &rest);
-    let along: Vec<f64> = derivatives.iter().map(|derivative| dot(derivative, &rest)).collect();
-    let matrix: Vec<Vec<f64>> =
-        derivatives.iter().map(|a| derivatives.iter().map(|b| dot(a, b)).collect()).collect();
-    // The share of what is left that one step explains.
-    let gain = |group: &[What]| {
-        let places: Vec<usize> =
-            group.iter().filter_map(|what| all.iter().position(|it| it == what)).collect();
-        if places.iter().any(|i| matrix[*i][*i] <= 0.0) {
-            return 0.0;
-        }
-        let right: Vec<f64> = places.iter().map(|i| along[*i]).collect();
-        let part: Vec<Vec<f64>> =
-            places.iter().map(|i| places.iter().map(|j| matrix[*i][*j]).collect()).collect();
-        let found = solved(&part, &right);
-        found.map_or(0.0, |(step, _)| step.iter().zip(&right).map(|(a, b)| a * b).sum::<f64>() / square)
-    };
-    let singles: Vec<Vec<What>> = all.iter().map(|what| vec![*what]).collect();
-    let mut found = [Vec::new(), Vec::new()];
-    for (kind, groups) in [singles, What::groups(&all)].into_iter().enumerate() {
-        let mut groups: Vec<(f64, Vec<What>)> =
-            groups.into_iter().map(|group| (gain(&group), group)).filter(|(gain, _)| *gain > LEAST).collect();
-        // Of a group, its parts must not explain as much.
-        groups.retain(|(whole, group)| {
-            group.len() == 1 || group.iter().all(|part| gain(&[*part]) < whole - 0.3 * (1.0 - whole).min(0.1))
-        });
-        groups.sort_by(|(a, _), (b, _)| b.total_cmp(a));
-        groups.truncate(TRIED[kind]);
-        let mut solutions = Vec::new();
-        for (_, group) in groups {
-            if let Some((quality, solution)) =
-                solve(screen, &base, &group)?.filter(|(it, _)| *it < MOST * start)
-            {
-                solutions.push((quality, group, solution));
+impl Step {
+    /// The step along these derivatives, of at most four numbers, that leaves least of `rest`.
+    fn new(derivatives: &[&[f64]], rest: &[f64], weights: &[f64]) -> Option<Step> {
+        let dot = |a: &[f64], b: &[f64]| {
+            let products = a.iter().zip(b).zip(weights).map(|((a, b), weight)| weight * a * b);
+            products.filter(|x| x.is_finite()).sum::<f64>()
+        };
+        let scales: Vec<f64> = derivatives.iter().map(|a| dot(a, a).max(1e-300).sqrt()).collect();
+        let (mut matrix, mut right) = (DMat4::IDENTITY, DVec4::ZERO);
+        for (i, a) in derivatives.iter().enumerate() {
+            for (j, b) in derivatives.iter().enumerate().filter(|(j, _)| *j != i) {
+                matrix.col_mut(i)[j] = dot(a, b) / (scales[i] * scales[j]);
             }
+            // A number that changes nothing stays.
+            matrix.col_mut(i)[i] = 1.0 + 1e-6;
+            right[i] = dot(a, rest) / scales[i];
         }
-        solutions.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
-        found[kind] =
-            solutions.into_iter().take(KEPT).map(|(_, group, solution)| (group, solution)).collect();
+        let inverse = matrix.inverse();
+        let found = inverse * right;
+        let each = || scales.iter().enumerate();
+        found.is_finite().then(|| Step {
+            by: each().map(|(i, scale)| found[i] / scale).collect(),
+            deviations: each().map(|(i, scale)| inverse.col(i)[i].max(0.0).sqrt() / scale).collect(),
+            gain: found.dot(right) / dot(rest, rest),
+        })
     }
-    Ok(found)
 }
 
-fn derivative(screen: &mut Screen, at: &Hypothesis, what: What) -> Result<Vec<f64>> {
-    let ([below, above], distance) = sides(at, what);
-    let [below, above] = [screen.rest(&below, None)?, screen.rest(&above, None)?];
-    Ok(below.iter().zip(&above).map(|(below, above)| (below - above) / distance).collect())
+/// Numbers that are not those of the base, and the hypothesis that has them.
+#[derive(Clone, Debug)]
+pub struct Start {
+    pub whats: Vec<What>,
+    pub at: Hypothesis,
+    /// What is left on the small picture.
+    rest: f64,
 }
 
-/// Gauss-Newton over a group of numbers on a small picture: first with equal weights, as far away the noise says little, then
-/// with those of the noise. Returns what is left, and the hypothesis.
-fn solve(screen: &mut Screen, base: &Hypothesis, group: &[What]) -> Result<Option<(f64, Hypothesis)>> {
-    const STEPS: usize = 6;
-    let home: Vec<f64> = group.iter().map(|what| what.of(base)).collect();
-    let reaches: Vec<Reach> = group.iter().map(|what| what.reach(base)).collect();
-    let (mut at, mut best) = (home.clone(), f64::INFINITY);
-    for is_far in [true, false] {
-        let weights = screen.weights(is_far);
-        let quality = |rest: &[f64]| rest.iter().zip(&weights).map(|(rest, w)| w * rest * rest).sum::<f64>();
-        let mut rest = screen.rest(&with(base, group, &at), None)?;
-        best = quality(&rest);
-        for _ in 0..STEPS {
-            let here = with(base, group, &at);
-            let mut derivatives = Vec::new();
-            for what in group {
-                derivatives.push(derivative(screen, &here, *what)?);
+impl Start {
+    fn with(&self, values: &[f64]) -> Hypothesis {
+        let mut changed = self.at.clone();
+        for (what, value) in self.whats.iter().zip(values) {
+            let Reach { limits: [low, high], .. } = what.reach(&self.at);
+            what.access(&mut changed, Some(value.clamp(low, high)));
+        }
+        changed
+    }
+
+    fn values(&self) -> Vec<f64> {
+        self.whats.iter().map(|what| what.of(&self.at)).collect()
+    }
+
+    /// The same hypothesis with one more number to be changed.
+    fn and(&self, what: What) -> Start {
+        let mut more = self.clone();
+        more.whats.push(what);
+        more
+    }
+
+    /// The hypothesis with its numbers in the reader's words.
+    pub fn named(&self, base: &Hypothesis, deviations: Option<&[f64]>) -> Hypothesis {
+        let mut named = self.at.clone();
+        for (index, what) in self.whats.iter().enumerate() {
+            // Channels share their noise.
+            let known = deviations.map(|all| 3.0_f64.sqrt() * all[index]);
+            named.numbers.push(what.number(
+                what.of(&self.at),
+                known.unwrap_or_else(|| what.reach(base).step),
+                base,
+            ));
+        }
+        named
+    }
+
+    /// The pictures on both sides of each number, and their distance.
+    fn sides(&self) -> Vec<([Hypothesis; 2], f64)> {
+        let side = |what: &What| {
+            let Reach { step, limits: [low, high], .. } = what.reach(&self.at);
+            let value = what.of(&self.at);
+            let ends = [value - step, value + step].map(|end| end.clamp(low, high));
+            let alone = Start { whats: vec![*what], ..self.clone() };
+            (ends.map(|end| alone.with(&[end])), ends[1] - ends[0])
+        };
+        self.whats.iter().map(side).collect()
+    }
+}
+
+/// Shares of a number's reach at which it is tried.
+const TRIED: [f64; 6] = [-1.0, -0.5, -0.2, 0.2, 0.5, 1.0];
+
+/// Samples per pixel of the small pictures.
+const SAMPLES: u64 = 32;
+
+/// The search for numbers on a small picture.
+pub struct Solver {
+    pub screen: Screen,
+}
+
+impl Solver {
+    /// Where the search begins.
+    pub fn start(&mut self, studio: &mut Studio) -> Result<Start> {
+        let at = self.screen.base.clone();
+        Ok(Start { rest: self.quality(studio, &at, true)?, at, whats: Vec::new() })
+    }
+
+    fn quality(&mut self, studio: &mut Studio, of: &Hypothesis, is_far: bool) -> Result<f64> {
+        let rest = self.screen.rest(studio, of, SAMPLES, None)?;
+        Ok(square(&rest, &self.screen.weights(is_far)))
+    }
+
+    fn derivatives(&mut self, studio: &mut Studio, start: &Start) -> Result<Vec<Vec<f64>>> {
+        let mut all = Vec::new();
+        for ([below, above], distance) in start.sides() {
+            let below = self.screen.rest(studio, &below, SAMPLES, None)?;
+            let above = self.screen.rest(studio, &above, SAMPLES, None)?;
+            all.push(below.iter().zip(&above).map(|(below, above)| (below - above) / distance).collect());
+        }
+        Ok(all)
+    }
+
+    /// Hypotheses with one number more, each solved on the small picture, the nearest first.
+    pub fn one_more(&mut self, studio: &mut Studio, start: &Start) -> Result<Vec<Start>> {
+        /// A number must leave less than this share of what is left.
+        const MOST: f64 = 0.7;
+        const SOLVED: usize = 8;
+        const KEPT: usize = 3;
+        let weights = self.screen.weights(true);
+        let rest = self.screen.rest(studio, &start.at, SAMPLES, None)?;
+        let known = self.derivatives(studio, start)?;
+        let mut tried = Vec::new();
+        for what in What::all(&start.at).into_iter().filter(|what| !start.whats.contains(what)) {
+            let own = self.derivatives(studio, &Start { whats: vec![what], ..start.clone() })?;
+            let all: Vec<&[f64]> = known.iter().chain(&own).map(Vec::as_slice).collect();
+            let gain = Step::new(&all, &rest, &weights).map_or(0.0, |step| step.gain);
+            let mut best = (1.0 - gain, start.and(what));
+            let alone = Start { whats: vec![what], ..start.clone() };
+            for share in TRIED.into_iter().filter(|_| start.whats.is_empty()) {
+                let at = alone.with(&[what.of(&start.at) + share * what.reach(&start.at).most]);
+                let left = self.quality(studio, &at, true)? / start.rest;
+                if left < best.0 && left < 0.9 {
+                    best = (left, Start { at, ..alone.clone() });
+                }
             }
-            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).zip(&weights).map(|((a, b), w)| w * a * b).sum();
-            let matrix: Vec<Vec<f64>> =
-                derivatives.iter().map(|a| derivatives.iter().map(|b| dot(a, b)).collect()).collect();
-            let right: Vec<f64> = derivatives.iter().map(|a| dot(a, &rest)).collect();
-            let Some((step, _)) = solved(&matrix, &right) else { break };
-            let mut is_moved = false;
-            for share in [1.0, 0.4, 0.15] {
-                let next: Vec<f64> = (0..group.len())
-                    .map(|i| {
-                        let Reach { most, limits: [low, high], .. } = reaches[i];
-                        let step = (share * step[i]).clamp(-most / 2.0, most / 2.0);
-                        (at[i] + step).clamp(home[i] - most, home[i] + most).clamp(low, high)
-                    })
-                    .collect();
-                let there = screen.rest(&with(base, group, &next), None)?;
-                if quality(&there) < 0.999 * best {
-                    is_moved = (0..group.len()).any(|i| (next[i] - at[i]).abs() > reaches[i].step / 20.0);
-                    (best, rest, at) = (quality(&there), there, next);
+            tried.push(best);
+        }
+        tried.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        let mut found = Vec::new();
+        let solved = if start.whats.is_empty() { SOLVED } else { SOLVED / 2 };
+        for (_, more) in tried.into_iter().filter(|(left, _)| *left < 0.99).take(solved) {
+            found.push(self.solved(studio, more)?);
+        }
+        found.retain(|it| it.rest < MOST * start.rest);
+        found.sort_by(|a, b| a.rest.total_cmp(&b.rest));
+        found.truncate(KEPT);
+        Ok(found)
+    }
+
+    /// Gauss-Newton: first with equal weights, as far away the noise says little, then with those of the noise.
+    fn solved(&mut self, studio: &mut Studio, mut start: Start) -> Result<Start> {
+        const STEPS: usize = 6;
+        let reaches: Vec<Reach> = start.whats.iter().map(|what| what.reach(&self.screen.base)).collect();
+        let home: Vec<f64> = start.whats.iter().map(|what| what.of(&self.screen.base)).collect();
+        for is_far in [true, false] {
+            let weights = self.screen.weights(is_far);
+            let mut rest = self.screen.rest(studio, &start.at, SAMPLES, None)?;
+            for _ in 0..STEPS {
+                let derivatives = self.derivatives(studio, &start)?;
+                let derivatives: Vec<&[f64]> = derivatives.iter().map(Vec::as_slice).collect();
+                let Some(Step { by, .. }) = Step::new(&derivatives, &rest, &weights) else { break };
+                let (before, here) = (square(&rest, &weights), start.values());
+                let mut is_moved = false;
+                for share in [1.0, 0.4, 0.15] {
+                    let next: Vec<f64> = (0..by.len())
+                        .map(|i| {
+                            let most = reaches[i].most;
+                            let step = (share * by[i]).clamp(-most / 2.0, most / 2.0);
+                            (here[i] + step).clamp(home[i] - most, home[i] + most)
+                        })
+                        .collect();
+                    let at = start.with(&next);
+                    let there = self.screen.rest(studio, &at, SAMPLES, None)?;
+                    if square(&there, &weights) < 0.999 * before {
+                        is_moved = (0..by.len()).any(|i| (next[i] - here[i]).abs() > reaches[i].step / 20.0);
+                        (rest, start.at) = (there, at);
+                        break;
+                    }
+                }
+                if !is_moved {
                     break;
                 }
             }
-            if !is_moved {
-                break;
-            }
         }
+        start.rest = self.quality(studio, &start.at, true)?;
+        Ok(start)
     }
-    Ok((at != home).then(|| (best, with(base, group, &at))))
 }
 
-/// The last steps, at the reader's size, with pictures that `render` makes: in full, or with few samples of the program's own
-/// tracer. Returns the hypothesis with its numbers, its picture and how it fits.
+fn square(rest: &[f64], weights: &[f64]) -> f64 {
+    rest.iter().zip(weights).map(|(rest, weight)| weight * rest * rest).sum()
+}
+
+/// One step at the reader's size, where `here` is what the start leaves, with pictures of few samples that `render` makes.
+/// Returns the numbers with their deviations.
 pub fn finished(
-    render: &mut dyn FnMut(&Hypothesis, bool) -> Result<Rendered>,
-    seen: &Seen,
+    start: &Start,
     base: &Hypothesis,
-    group: &[What],
-    start: Hypothesis,
-) -> Result<(Hypothesis, Rendered, Fit)> {
-    const STEPS: usize = 3;
-    /// From such a score, no few steps lead to a picture that fits.
-    const HOPELESS: f64 = 2000.0;
-    let mut at = start;
-    let mut best: Option<(Hypothesis, Rendered, Fit)> = None;
-    for _ in 0..=STEPS {
-        let rendered = render(&at, true)?;
-        let fit = Fit::new(seen, &at.written, &rendered);
-        // Below the limit, a score is no better than another.
-        let is_better = best.as_ref().is_none_or(|(.., before)| fit.score < before.score || fit.is_enough());
-        if fit.score > HOPELESS && best.is_none() {
-            return Ok((at, rendered, fit));
-        }
-        let mut derivatives = Vec::new();
-        for what in group {
-            let ([below, above], distance) = sides(&at, *what);
-            let (below, above) = (render(&below, false)?.mean(), render(&above, false)?.mean());
-            let pixels = below.iter().zip(&above).zip(&fit.steps);
-            let derivative: Vec<[f64; 3]> = pixels
-                .map(|((below, above), step)| [0, 1, 2].map(|c| (above[c] - below[c]) / (distance * step[c])))
-                .collect();
-            derivatives.push(fit.in_blocks(seen, &derivative));
-        }
-        let rest = fit.in_blocks(seen, &fit.left);
-        let noise = fit.in_blocks(seen, &fit.variance);
-        let dot = |a: &[f64], b: &[f64]| {
-            a.iter()
-                .zip(b)
-                .zip(&noise)
-                .map(|((a, b), noise)| a * b / noise)
-                .filter(|x| x.is_finite())
-                .sum::<f64>()
-        };
-        let matrix: Vec<Vec<f64>> =
-            derivatives.iter().map(|a| derivatives.iter().map(|b| dot(a, b)).collect()).collect();
-        let right: Vec<f64> = derivatives.iter().map(|a| dot(a, &rest)).collect();
-        let solution = solved(&matrix, &right);
-        // Channels share their noise.
-        let deviations = solution.as_ref().map(|(_, all)| all.iter().map(|one| 3.0_f64.sqrt() * one));
-        let mut named = at.clone();
-        for (what, deviation) in group.iter().zip(deviations.into_iter().flatten()) {
-            named.numbers.push(what.number(what.of(&at), deviation, base));
-        }
-        if is_better {
-            best = Some((named, rendered, fit));
-        }
-        let Some((step, deviations)) = solution.filter(|_| is_better) else { break };
-        if step.iter().zip(&deviations).all(|(step, deviation)| step.abs() < 0.5 * deviation) {
-            break;
-        }
-        let values: Vec<f64> = group
-            .iter()
-            .zip(step)
-            .map(|(what, step)| {
-                let most = what.reach(base).most / 5.0;
-                what.of(&at) + step.clamp(-most, most)
-            })
+    seen: &Seen,
+    here: &Compared,
+    render: &mut dyn FnMut(&Hypothesis) -> Result<Rendered>,
+) -> Result<Hypothesis> {
+    let fit = &here.fit;
+    let mut derivatives = Vec::new();
+    for ([below, above], distance) in start.sides() {
+        let (below, above) = (render(&below)?.mean(), render(&above)?.mean());
+        let pixels = below.iter().zip(&above).zip(&fit.steps);
+        let derivative: Vec<[f64; 3]> = pixels
+            .map(|((below, above), step)| [0, 1, 2].map(|c| (above[c] - below[c]) / (distance * step[c])))
             .collect();
-        at = with(&at, group, &values);
+        derivatives.push(fit.in_blocks(seen, &derivative));
     }
-    let (mut found, rendered, fit) = best.context("no picture was rendered")?;
-    // People type round numbers.
-    let round: Vec<f64> = group.iter().map(|what| (10.0 * what.of(&found)).round() / 10.0).collect();
-    let is_close = |what: &What, round: f64| (what.of(&found) - round).abs() < 2.0 * what.reach(base).step;
-    if !fit.is_enough() && group.iter().zip(&round).all(|(what, round)| is_close(what, *round)) {
-        let at = with(&found, group, &round);
-        let (rendered, fit) = {
-            let rendered = render(&at, true)?;
-            let fit = Fit::new(seen, &at.written, &rendered);
-            (rendered, fit)
-        };
-        if fit.is_enough() {
-            let deviations: Vec<f64> = found.numbers.iter().map(|number| number.deviation).collect();
-            found = at;
-            found.numbers =
-                group.iter().zip(deviations).map(|(what, d)| what.number(what.of(&found), d, base)).collect();
-            return Ok((found, rendered, fit));
-        }
-    }
-    Ok((found, rendered, fit))
+    let derivatives: Vec<&[f64]> = derivatives.iter().map(Vec::as_slice).collect();
+    let weights: Vec<f64> = fit.in_blocks(seen, &fit.variance).into_iter().map(f64::recip).collect();
+    let Some(step) = Step::new(&derivatives, &fit.in_blocks(seen, &fit.left), &weights) else {
+        return Ok(start.named(base, None));
+    };
+    let values = start.whats.iter().zip(start.values()).zip(&step.by).map(|((what, value), by)| {
+        let most = what.reach(base).most / 5.0;
+        value + by.clamp(-most, most)
+    });
+    let there = Start { at: start.with(&values.collect::<Vec<_>>()), ..start.clone() };
+    Ok(there.named(base, Some(&step.deviations)))
 }

@@ -224,24 +224,26 @@ impl<'a> Tracer<'a> {
         stop: &AtomicBool,
     ) -> Vec<[[f64; 3]; 2]> {
         let [width, height] = self.size;
-        let count = f64::from(samples.end - samples.start);
         let pixel = |pixel: u32| {
             if mask.is_some_and(|mask| !mask[pixel as usize]) || stop.load(Ordering::Relaxed) {
                 return [[f64::NAN; 3]; 2];
             }
             let sequence = (self.steps.random)(pixel);
-            let (mut sum, mut square) = (DVec3::ZERO, DVec3::ZERO);
+            let (mut sum, mut square, mut count) = (DVec3::ZERO, DVec3::ZERO, 0.0_f64);
             for sample in samples.clone() {
                 // Each has its own numbers, so that paths which a mistake does not change stay equal.
                 let mut random = Random { counter: sample << 10, sequence };
                 let value = (self.steps.sample)(self.sample(pixel % width, pixel / width, &mut random));
-                sum += value;
-                square += value * value;
+                if value.is_finite() {
+                    sum += value;
+                    square += value * value;
+                    count += 1.0;
+                }
             }
-            // What is not a number becomes 0 in most programs.
-            let mean = if sum.is_finite() { sum / count } else { DVec3::ZERO };
+            let count = count.max(1.0);
+            let mean = sum / count;
             let variance = (square / count - mean * mean) * (count / (count - 1.0).max(1.0));
-            let variance = if variance.is_finite() { variance.max(DVec3::ZERO) } else { DVec3::ZERO };
+            let variance = variance.max(DVec3::ZERO);
             [mean, variance].map(|of| of.to_array())
         };
         (0..width * height).into_par_iter().with_min_len(64).map(pixel).collect()

@@ -19,6 +19,8 @@ pub struct Written {
     pub rounds: bool,
     /// Whether 256 becomes 0 instead of 255.
     pub wraps: bool,
+    /// Whether pixels of which a sample is not a number are black, so that black ones say nothing.
+    pub blackens: bool,
 }
 
 /// The order of the numbers in a file.
@@ -113,6 +115,9 @@ impl Seen {
             let Some(source) = written.order.source(index, file) else { continue };
             let (pixel, channel) = (source / 3, written.channels[source % 3]);
             let Some(value) = values.get_mut(pixel) else { continue };
+            if written.blackens && mine.bytes[index / 3] == [0; 3] {
+                continue;
+            }
             let byte = written.unwrapped(*byte, || expected(pixel, channel));
             value[channel] = levels[pixel / size[0] as usize].middles[usize::from(byte)];
         }
@@ -136,6 +141,7 @@ impl Written {
             levels: 256.0,
             rounds: false,
             wraps: false,
+            blackens: false,
         }
     }
 

@@ -75,6 +75,7 @@ fn reflect(v: DVec3, n: DVec3) -> DVec3 {
 pub struct Book {
     stage: &'static str,
     mistake: &'static str,
+    is_edition_3: bool,
     world: Vec<Sphere>,
     look_from: DVec3,
     look_at: DVec3,
@@ -126,6 +127,7 @@ impl Book {
         Book {
             stage,
             mistake,
+            is_edition_3: false,
             world,
             look_from: if is_lens { DVec3::new(-2.0, 2.0, 1.0) } else { DVec3::ZERO },
             look_at: DVec3::NEG_Z,
@@ -134,6 +136,25 @@ impl Book {
             focus_dist: if is_lens && mistake != "focus-distance-one" { 3.4 } else { 1.0 },
             max_depth: if mistake == "bounce-limit" { 4 } else { 50 },
         }
+    }
+
+    #[allow(dead_code, reason = "the table of checks uses it")]
+    /// The same section in edition 3: another camera, other balls, and fuzz from inside the unit sphere.
+    pub fn of_edition_3(stage: &'static str, mistake: &'static str) -> Book {
+        let mut book = Book { is_edition_3: true, ..Book::new(stage, mistake) };
+        for sphere in &mut book.world {
+            match (stage, sphere.mat) {
+                ("metal-fuzzy", Material::Lambertian(_)) if sphere.radius < 1.0 => {
+                    sphere.mat = Material::Lambertian(DVec3::new(0.7, 0.3, 0.3));
+                }
+                ("hollow-glass", Material::Metal(albedo, _)) => sphere.mat = Material::Metal(albedo, 0.0),
+                _ => {}
+            }
+            if sphere.radius < 1.0 {
+                sphere.center.z = -1.0;
+            }
+        }
+        book
     }
 
     fn makes(&self, mistake: &str) -> bool {
@@ -204,7 +225,8 @@ impl Book {
                     reflected = reflected.normalize();
                 }
                 if !self.makes("fuzz-missing") {
-                    reflected += rng.unit_vector() * fuzz;
+                    let v = if self.is_edition_3 { rng.in_unit_sphere() } else { rng.unit_vector() };
+                    reflected += v * fuzz;
                 }
                 (reflected.dot(rec.normal) > 0.0).then_some((albedo, reflected))
             }
@@ -271,7 +293,7 @@ impl Book {
         let v = w.cross(u);
         let viewport_u = u * (viewport_height * aspect);
         let viewport_v = v * -viewport_height;
-        let less = if self.makes("width-less-one") { 1 } else { 0 };
+        let less = if self.is_edition_3 || self.makes("width-less-one") { 1 } else { 0 };
         let (delta_u, delta_v) =
             (viewport_u / f64::from(width - less), viewport_v / f64::from(height - less));
         let corner = self.look_from - w * self.focus_dist - viewport_u * 0.5 - viewport_v * 0.5;
@@ -288,9 +310,14 @@ impl Book {
                     rng = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
                 }
                 let (mut sum, shift) = (DVec3::ZERO, if self.makes("half-pixel-down") { 0.0 } else { 0.5 });
+                // Edition 3 counts rows from below.
+                let up = if self.is_edition_3 { 1.0 } else { 0.0 };
                 for _ in 0..samples {
-                    let (x, y) =
-                        if is_jittered { (rng.double() - shift, rng.double() - shift) } else { (0.0, 0.0) };
+                    let (x, y) = if is_jittered {
+                        (rng.double() - shift, rng.double() - shift - up)
+                    } else {
+                        (0.0, 0.0)
+                    };
                     let pixel = pixel00 + delta_u * (f64::from(i) + x) + delta_v * (f64::from(j) + y);
                     let on_lens = if self.defocus_angle <= 0.0 {
                         self.look_from
