@@ -39,7 +39,8 @@ pub(super) fn render(
             Event::Stopping => {
                 let hint = "; press Ctrl-C again to exit at once without writing";
                 let hint = if interrupt.is_by_hand() { hint } else { "" };
-                display.say(&format!("finishing the current samples and writing the files{hint}"));
+                let cause = interrupt.cause();
+                display.say(&format!("{cause}: finishing the current samples and writing the files{hint}"));
             }
             Event::Status(_, status) if status.phase.is_over() => {}
             Event::Status(progressive, status) => {

@@ -13,20 +13,11 @@ pub const BAD_INPUT: u8 = 2;
 /// Exit code of a render that stopped early; its files hold the samples so far.
 pub const BROKE_OFF: u8 = 3;
 
-/// Exit code after SIGHUP, which a closing terminal sends: 128 plus its number.
-pub const HUNG_UP: u8 = 129;
-
-/// Exit code after Ctrl-C: 128 plus the number of SIGINT.
-pub const INTERRUPTED: u8 = 130;
-
-/// Exit code after SIGTERM, which schedulers send before the time is up: 128 plus its number.
-pub const TERMINATED: u8 = 143;
-
 /// The exit codes as `--help` explains them.
 pub const EXIT_CODES: &str = "\
 Exit codes: 0 success; 1 failure during the run (compare: the inputs differ; check: a mistake; merge: a part is missing); 2 the request cannot be carried \
-out, nothing was started (compare: it cannot tell); 3 the render failed, but what it had rendered is saved; 130 Ctrl-C, 143 SIGTERM, 129 \
-SIGHUP: what had been rendered is saved";
+out, nothing was started (compare: it cannot tell); 3 the render failed, but what it had rendered is saved; 128 + N signal N, such as \
+130 Ctrl-C and 143 SIGTERM: what had been rendered is saved";
 
 /// Why the program ends without doing what was asked.
 #[derive(Debug)]

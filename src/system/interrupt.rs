@@ -1,14 +1,38 @@
-//! Signals such as Ctrl-C (SIGINT, SIGTERM, SIGHUP). The first requests an orderly end. Another Ctrl-C ends the program
-//! at once, but never while files are being written. The exit code tells which signal it was. On Linux, a signal that
-//! was ignored at the start, such as SIGHUP under nohup, stays ignored. On Windows, these are console events.
+//! Signals that ask the program to end. The first requests an orderly end: what was rendered is saved. Another Ctrl-C
+//! ends the program at once, but never while files are being written. The exit code tells which signal it was. On Linux,
+//! a signal that was ignored at the start, such as SIGHUP under nohup, stays ignored. On Windows, these are console
+//! events.
 
 use crate::system::console;
-use crate::system::failure::{HUNG_UP, INTERRUPTED, TERMINATED};
 use anyhow::{Context, Result};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
+
+/// The signals that ask for an end: number and meaning. The exit code is 128 plus the number of the first one in this
+/// table that has arrived: the person at the keyboard decides before any program.
+const SIGNALS: &[(i32, &str)] = &[
+    (INTERRUPT, "Ctrl-C"),
+    (QUIT, "Ctrl-\\"),
+    (TERMINATE, "SIGTERM: the system or a scheduler ends the program"),
+    #[cfg(unix)]
+    (signal_hook::consts::SIGXCPU, "SIGXCPU: the limit on processor time (ulimit -t) is reached"),
+    #[cfg(target_os = "linux")]
+    (rustix::process::Signal::POWER.as_raw(), "SIGPWR: the power fails"),
+    #[cfg(unix)]
+    (signal_hook::consts::SIGUSR2, "SIGUSR2: a scheduler warns that it will end the program"),
+    #[cfg(unix)]
+    (signal_hook::consts::SIGUSR1, "SIGUSR1: a scheduler warns that it will end or suspend the program"),
+    #[cfg(unix)]
+    (signal_hook::consts::SIGALRM, "SIGALRM: a timer has run out"),
+    (HANG_UP, "SIGHUP: the terminal was closed"),
+];
+
+const HANG_UP: i32 = 1;
+const INTERRUPT: i32 = 2;
+const QUIT: i32 = 3;
+const TERMINATE: i32 = 15;
 
 /// A second signal within this time is an echo of the first: `timeout` and shells signal a program and then its group.
 const ECHO: Duration = Duration::from_millis(500);
@@ -26,8 +50,8 @@ struct Shared {
 struct State {
     /// When the first signal arrived.
     since: Option<Instant>,
-    /// The exit code of the signals that have arrived.
-    exit_code: Option<u8>,
+    /// Which of [`SIGNALS`] has arrived, the first in the table.
+    signal: Option<usize>,
     /// Description of what is being written.
     writing: Option<String>,
 }
@@ -36,27 +60,19 @@ impl State {
     /// Whether somebody waits at a keyboard. Schedulers repeat SIGTERM, and send SIGKILL to a program that takes too
     /// long.
     fn hurries(&self) -> bool {
-        self.exit_code == Some(INTERRUPTED)
+        self.signal.is_some_and(|signal| matches!(SIGNALS[signal].0, INTERRUPT | QUIT))
     }
 }
 
-/// Calls `answer` with the exit code of each signal, on its own thread.
+/// Calls `answer` with each signal, on its own thread.
 #[cfg(unix)]
-fn watch(answer: impl Fn(u8) + Send + 'static) -> Result<()> {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+fn watch(answer: impl Fn(i32) + Send + 'static) -> Result<()> {
     // Called before any is handled, this tells those ignored at the start.
     let ignored = ignored_in(&std::fs::read_to_string("/proc/self/status").unwrap_or_default());
-    let handled = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| ignored & (1 << (signal - 1)) == 0);
+    let numbers = SIGNALS.iter().map(|(number, _)| *number);
+    let handled = numbers.filter(|number| ignored & (1 << (number - 1)) == 0);
     let mut signals = signal_hook::iterator::Signals::new(handled)?;
-    let listen = move || {
-        for signal in signals.forever() {
-            answer(match signal {
-                SIGTERM => TERMINATED,
-                SIGHUP => HUNG_UP,
-                _ => INTERRUPTED,
-            });
-        }
-    };
+    let listen = move || signals.forever().for_each(answer);
     std::thread::Builder::new().name("signals".to_owned()).spawn(listen)?;
     Ok(())
 }
@@ -64,7 +80,7 @@ fn watch(answer: impl Fn(u8) + Send + 'static) -> Result<()> {
 /// Closing the console counts as a hangup, and the end of the session as SIGTERM. After these the system waits some
 /// seconds, then ends the program.
 #[cfg(windows)]
-fn watch(answer: impl Fn(u8) + Send + 'static) -> Result<()> {
+fn watch(answer: impl Fn(i32) + Send + 'static) -> Result<()> {
     use std::task::Poll;
     use tokio::signal::windows::{ctrl_break, ctrl_c, ctrl_close, ctrl_logoff, ctrl_shutdown};
     let (mut by_key, mut by_break, mut close) = (ctrl_c()?, ctrl_break()?, ctrl_close()?);
@@ -73,11 +89,11 @@ fn watch(answer: impl Fn(u8) + Send + 'static) -> Result<()> {
         loop {
             answer(pollster::block_on(std::future::poll_fn(|context| {
                 if by_key.poll_recv(context).is_ready() | by_break.poll_recv(context).is_ready() {
-                    Poll::Ready(INTERRUPTED)
+                    Poll::Ready(INTERRUPT)
                 } else if close.poll_recv(context).is_ready() {
-                    Poll::Ready(HUNG_UP)
+                    Poll::Ready(HANG_UP)
                 } else if log_off.poll_recv(context).is_ready() | shut_down.poll_recv(context).is_ready() {
-                    Poll::Ready(TERMINATED)
+                    Poll::Ready(TERMINATE)
                 } else {
                     Poll::Pending
                 }
@@ -90,7 +106,7 @@ fn watch(answer: impl Fn(u8) + Send + 'static) -> Result<()> {
 
 /// Other systems have no signals; they end the program as a whole.
 #[cfg(not(any(unix, windows)))]
-fn watch(_: impl Fn(u8) + Send + 'static) -> Result<()> {
+fn watch(_: impl Fn(i32) + Send + 'static) -> Result<()> {
     Ok(())
 }
 
@@ -115,14 +131,12 @@ impl Shared {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn signalled(&self, exit_code: u8, now: Instant) -> Answer {
+    fn signalled(&self, number: i32, now: Instant) -> Answer {
         let mut state = self.state();
         let first = *state.since.get_or_insert(now);
         let was_set = self.is_set.swap(true, Ordering::Relaxed);
-        // Ctrl-C wins: the person at the keyboard wants the end, whatever else asks for it.
-        state.exit_code = [INTERRUPTED, TERMINATED, HUNG_UP]
-            .into_iter()
-            .find(|code| *code == exit_code || Some(*code) == state.exit_code);
+        let signal = SIGNALS.iter().position(|(known, _)| *known == number);
+        state.signal = [signal, state.signal].into_iter().flatten().min();
         match &state.writing {
             Some(what) => Answer::Say(format!("still writing {what}; the program ends when that is done")),
             None if was_set && state.hurries() && now.duration_since(first) >= ECHO => Answer::Exit,
@@ -131,7 +145,7 @@ impl Shared {
     }
 
     fn exit_code(&self) -> u8 {
-        self.state().exit_code.unwrap_or(INTERRUPTED)
+        128 + SIGNALS[self.state().signal.unwrap_or(0)].0 as u8
     }
 }
 
@@ -151,7 +165,7 @@ impl Interrupt {
     pub fn install_with(wake: impl Fn() + Send + 'static) -> Result<Self> {
         let shared = Arc::new(Shared::default());
         let seen = Arc::clone(&shared);
-        let answer = move |code| match seen.signalled(code, Instant::now()) {
+        let answer = move |number| match seen.signalled(number, Instant::now()) {
             Answer::Nothing => wake(),
             Answer::Say(message) => console::note(&message),
             Answer::Exit => {
@@ -180,6 +194,11 @@ impl Interrupt {
     /// Whether somebody at a keyboard asked for the end and can ask again.
     pub fn is_by_hand(&self) -> bool {
         self.0.state().hurries()
+    }
+
+    /// What the signal means.
+    pub fn cause(&self) -> &'static str {
+        SIGNALS[self.0.state().signal.unwrap_or(0)].1
     }
 
     /// Exit code of a program that ends cleanly after a signal.
@@ -221,18 +240,18 @@ mod tests {
     fn first_signal_asks_and_a_later_ctrl_c_ends() {
         let (shared, now) = (Shared::default(), Instant::now());
         assert_eq!(shared.exit_code(), 130);
-        assert_eq!(shared.signalled(HUNG_UP, now), Answer::Nothing);
+        assert_eq!(shared.signalled(HANG_UP, now), Answer::Nothing);
         assert_eq!((shared.is_set.load(Ordering::Relaxed), shared.exit_code()), (true, 129));
         assert_eq!(
-            shared.signalled(TERMINATED, now + 2 * ECHO),
+            shared.signalled(TERMINATE, now + 2 * ECHO),
             Answer::Nothing,
             "no scheduler is in a hurry"
         );
         assert_eq!(shared.exit_code(), 143);
-        assert_eq!(shared.signalled(INTERRUPTED, now + ECHO / 2), Answer::Nothing, "an echo");
+        assert_eq!(shared.signalled(INTERRUPT, now + ECHO / 2), Answer::Nothing, "an echo");
         assert_eq!(shared.exit_code(), 130);
-        assert_eq!(shared.signalled(INTERRUPTED, now + ECHO), Answer::Exit);
-        assert_eq!(Shared::default().signalled(INTERRUPTED, now), Answer::Nothing);
+        assert_eq!(shared.signalled(INTERRUPT, now + ECHO), Answer::Exit);
+        assert_eq!(Shared::default().signalled(INTERRUPT, now), Answer::Nothing);
     }
 
     #[cfg(unix)]
@@ -251,11 +270,11 @@ mod tests {
         let now = Instant::now();
         let writing = interrupt.while_writing("film.exr");
         for late in 0..3 {
-            let answer = interrupt.0.signalled(INTERRUPTED, now + late * ECHO);
+            let answer = interrupt.0.signalled(INTERRUPT, now + late * ECHO);
             assert!(matches!(&answer, Answer::Say(message) if message.contains("film.exr")), "{answer:?}");
         }
         drop(writing);
         assert!(interrupt.is_set());
-        assert_eq!(interrupt.0.signalled(INTERRUPTED, now + 3 * ECHO), Answer::Exit);
+        assert_eq!(interrupt.0.signalled(INTERRUPT, now + 3 * ECHO), Answer::Exit);
     }
 }

@@ -112,6 +112,14 @@ pub fn signal(child: &Child, name: &str) {
         "KILL" => Signal::KILL,
         "STOP" => Signal::STOP,
         "TERM" => Signal::TERM,
+        "QUIT" => Signal::QUIT,
+        "USR1" => Signal::USR1,
+        "USR2" => Signal::USR2,
+        #[cfg(target_os = "linux")]
+        "XCPU" => Signal::XCPU,
+        "ALRM" => Signal::ALARM,
+        #[cfg(target_os = "linux")]
+        "PWR" => Signal::POWER,
         other => panic!("SIG{other} is not sent by any test yet; add it here"),
     };
     kill_process(Pid::from_child(child), signal).unwrap();

@@ -75,6 +75,52 @@ fn signals_at_any_moment_leave_a_resumable_film() {
     assert!(films > 0);
 }
 
+/// Grid Engine, Slurm, LSF and limits on processor time announce the end with these.
+#[test]
+fn every_signal_that_asks_for_an_end_keeps_the_film() {
+    for (name, code) in
+        [("QUIT", 131), ("USR1", 138), ("USR2", 140), ("ALRM", 142), ("XCPU", 152), ("PWR", 158)]
+    {
+        let at = TempDir::new().unwrap();
+        let at = at.path();
+        let mut child = batch(at, "off", &ENDLESS).spawn().unwrap();
+        until("the film is not written", || at.join("g.exr").exists());
+        let before = film(&at.join("g.exr")).sample_count();
+        signal(&child, name);
+        assert_eq!(wait(&mut child).code(), Some(code), "SIG{name}");
+        assert_eq!(names(at), ["g.exr", "g.png"], "SIG{name}");
+        assert!(film(&at.join("g.exr")).sample_count() >= before);
+    }
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let mut command = Command::new("sh");
+    command.args(["-c", "ulimit -S -t 1; exec \"$0\" \"$@\"", PROGRAM]).args(PICTURE).arg("off");
+    let limited =
+        command.args(["--samples", "4294967296", "--out", "g.exr"]).current_dir(at).output().unwrap();
+    assert_eq!(limited.status.code(), Some(152), "{limited:?}");
+    assert!(text(&limited.stderr).contains("ulimit -t") && film(&at.join("g.exr")).sample_count() > 0);
+}
+
+#[test]
+fn commands_that_go_on_obey_the_signals_of_schedulers() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    succeeds(&mut batch(at, "off", &["--samples", "2", "--out", "own.png"]));
+    let frames = ["--batch", "--turntable=100000", "--size", "48x27", "--samples", "4", "--out", "frames"];
+    let ways: [(&[&str], &str); 3] = [
+        (&frames, "frames/frame-0000.png"),
+        (&["check", "--watch", "own.png", "--json", "found.json"], "found.json"),
+        (&["bench", "--scene", "three-spheres", "--runs", "99", "--log", "b.log"], "b.log"),
+    ];
+    for (arguments, sign) in ways {
+        let mut child = weekender(at, arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        until("it does not begin", || at.join(sign).exists());
+        sleep(Duration::from_millis(500));
+        signal(&child, "USR1");
+        assert_eq!(wait(&mut child).code(), Some(138), "{arguments:?}");
+    }
+}
+
 #[test]
 fn signals_wait_for_file_writes_and_are_answered() {
     let at = TempDir::new().unwrap();
