@@ -128,7 +128,7 @@ impl<'a> Work<'a> {
         let tasks = options.stages().map(|stage| Task::new(options, stage));
         let tasks: Vec<Task> = tasks.filter(|task| !task.is_done()).collect();
         for task in &tasks {
-            task.recipe.job().map_err(Failure::input)?.check_memory(1).map_err(Failure::input)?;
+            task.recipe.job().map_err(Failure::input)?.check_memory(1, 0).map_err(Failure::input)?;
         }
         let is_needed = !tasks.is_empty();
         let studio = is_needed.then(|| Studio::open(&options.backend, interrupt)).transpose()?;

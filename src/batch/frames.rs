@@ -104,7 +104,7 @@ fn check(options: &FramesOptions) -> Result<(), Failure> {
     for path in [Some(first.as_path()), options.json.as_deref()].into_iter().flatten() {
         check_writable(path).map_err(Failure::input)?;
     }
-    options.job.check_memory(1).map_err(Failure::input)
+    options.job.check_memory(1, 0).map_err(Failure::input)
 }
 
 const LINES: [Line; 4] = [

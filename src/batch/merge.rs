@@ -1,6 +1,6 @@
 //! `weekender merge`: adds films of the same picture, and says which of the requested samples are missing.
 
-use crate::film::{CheckpointError, FilmSum, SampleRanges, checkpoint};
+use crate::film::{CheckpointError, Film, FilmSum, SampleRanges, checkpoint};
 use crate::job::output::{OutputFormat, write_image};
 use crate::job::recipe::file;
 use crate::job::saved::{Replaced, same_job};
@@ -8,6 +8,7 @@ use crate::progressive::describe::counted;
 use crate::system::console;
 use crate::system::failure::{FAILED, Failure};
 use crate::system::files::{FileLock, ShownPath};
+use crate::system::memory;
 use crate::system::shell;
 use crate::system::terminal::print;
 use anyhow::{anyhow, bail};
@@ -63,6 +64,10 @@ type LeftOut<'a> = (&'a Path, anyhow::Error);
 
 /// Adds the films up. Only with `--samples` are films left out.
 fn add_up(options: &MergeOptions) -> anyhow::Result<(FilmSum, Vec<LeftOut<'_>>)> {
+    let heads = options.films.iter().filter_map(|film| checkpoint::read_head(film).ok());
+    let film = heads.map(|head| Film::bytes(head.width, head.height)).max().unwrap_or(0);
+    let count = options.films.len().min(2) as u64;
+    memory::check(|| "merging these films".to_owned(), film * count, "merge them on a larger machine")?;
     let (mut sum, mut left_out) = (None::<FilmSum>, Vec::new());
     for film in &options.films {
         let added = match &mut sum {

@@ -15,6 +15,7 @@ pub use studio::{Event, Studio};
 pub use summary::{Line, aligned, lines};
 
 use crate::backends::{self, BackendChoice};
+use crate::denoise;
 use crate::film::{CheckpointError, Film};
 use crate::job::output::OutputFormat;
 use crate::job::recipe::{Recipe, file};
@@ -198,7 +199,10 @@ fn check_before(options: &BatchOptions) -> Result<(), Failure> {
         .chain(&options.json)
         .try_for_each(|path| check_writable(path))
         .map_err(Failure::input)?;
-    options.job.check_memory(1).map_err(Failure::input)
+    options
+        .job
+        .check_memory(1, if options.denoise { denoise::BYTES_PER_PIXEL } else { 0 })
+        .map_err(Failure::input)
 }
 
 /// Prints the scenes, stages and devices to choose from.

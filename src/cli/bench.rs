@@ -113,7 +113,7 @@ impl BenchOptions {
         }
         settings.sampler = self.sampler.unwrap_or(settings.sampler);
         let job = RenderJob::new(recipe.scene, recipe.camera, settings, recipe.rules)?;
-        job.check_memory(2)?;
+        job.check_memory(2, 0)?;
         Ok(BenchScene { name: recipe.name, job, samples })
     }
 

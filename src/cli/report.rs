@@ -128,7 +128,7 @@ impl ReportOptions {
             );
             (scenes[index].settings.width, scenes[index].settings.height) = self.size;
             // A film, its reference, and the denoised one.
-            scenes[index].job()?.check_memory(4)?;
+            scenes[index].job()?.check_memory(4, 0)?;
         }
         Ok(scenes)
     }

@@ -56,7 +56,9 @@ impl Picture {
         let samples = described(key::SAMPLES).map_or_else(String::new, |count| format!(", {count} samples"));
         let denoised = described(key::DENOISED).or_else(|| (layer == Some(DENOISED_LAYER)).then(String::new));
         // A film's layers are pictures.
-        if let Some(saved @ Saved { kind: Kind::Film(_), .. }) = saved.as_ref().filter(|_| layer.is_none()) {
+        if let Some(saved @ Saved { kind: Kind::Film(head), .. }) = saved.as_ref().filter(|_| layer.is_none())
+        {
+            check_memory(head.width, head.height, 1)?;
             match saved.film() {
                 Ok(read) => return Picture::of_rendered(name, Some(&saved.recipe), read.film.into()),
                 // Another program lost the sums, but the picture is there.
@@ -112,12 +114,7 @@ impl Picture {
     /// memory.
     pub fn of_rendered(name: String, recipe: Option<&Recipe>, film: Arc<Film>) -> Result<Self> {
         let (width, height) = (film.width(), film.height());
-        let bytes = u64::from(width) * u64::from(height) * BYTES_PER_PIXEL;
-        memory::check(
-            || format!("comparing pictures of {width}x{height}"),
-            bytes,
-            "compare smaller pictures",
-        )?;
+        check_memory(width, height, 0)?;
         let size = format!("{width}x{height}, {} samples", film.sample_count());
         let about = match recipe {
             Some(Recipe { name, settings, .. }) => {
@@ -133,6 +130,13 @@ impl Picture {
         let value = self.pixels[pixel][channel];
         (self.limit.is_infinite() || !value.is_nan()).then_some(value)
     }
+}
+
+/// Checks whether a comparison of this size fits into memory, with this number of films that are not read yet.
+fn check_memory(width: u32, height: u32, films: u64) -> Result<()> {
+    let bytes = u64::from(width) * u64::from(height) * BYTES_PER_PIXEL + films * Film::bytes(width, height);
+    let what = || format!("comparing pictures of {width}x{height}");
+    Ok(memory::check(what, bytes, "compare smaller pictures")?)
 }
 
 /// A note, with what the user can do about it.

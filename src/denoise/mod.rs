@@ -26,6 +26,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Smaller pictures have too few pixels to tell an error from.
 const LEAST_PIXELS: usize = 64;
 
+/// Bytes per pixel that denoising needs besides the film.
+pub const BYTES_PER_PIXEL: u64 =
+    (6 * size_of::<[f32; 3]>() + size_of::<PixelSum>() + 2 * size_of::<f32>()) as u64;
+
 /// The means of a film's halves.
 pub struct Halves {
     /// Linear RGB, row by row from the top.
@@ -54,8 +58,7 @@ impl Halves {
             bail!("{}, and denoising needs two halves with light: render more samples", film.why_no_error());
         };
         let what = || format!("denoising {}x{} pixels", film.width(), film.height());
-        let bytes = pixels * (6 * size_of::<[f32; 3]>() + size_of::<PixelSum>() + 2 * size_of::<f32>());
-        memory::check(what, bytes as u64, "choose a smaller picture")?;
+        memory::check(what, BYTES_PER_PIXEL * pixels as u64, "choose a smaller picture")?;
         let means = |half: &Vec<PixelSum>, count: u64| {
             let unit = count as f64 * FIXED_POINT_SCALE;
             half.par_iter().map(|sum| sum.0.map(|k| (k as f64 / unit) as f32)).collect()

@@ -98,7 +98,10 @@ pub fn room() -> Option<Room> {
     let rooms = [
         (MACHINE, of_linux),
         (MACHINE, of_other_systems()),
-        (GROUP, free_of_groups()),
+        (
+            GROUP,
+            free_of_groups(&fs::read_to_string("/proc/self/cgroup").unwrap_or_default(), "/sys/fs/cgroup"),
+        ),
         (ADDRESS_SPACE, address_space),
         (DATA, data),
     ];
@@ -146,23 +149,41 @@ fn in_bytes(text: &str, name: &str) -> Option<u64> {
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// The memory that the process's control group and its ancestors still allow. In a container, the process's own group
-/// is the visible root, whatever its name outside.
-fn free_of_groups() -> Option<u64> {
-    let groups = fs::read_to_string("/proc/self/cgroup").ok()?;
-    let own = groups.lines().find_map(|line| line.strip_prefix("0::"))?;
-    let around = own.match_indices('/').map(|(end, _)| &own[..end]);
-    around.chain([own]).filter_map(|group| free_of_group(&format!("/sys/fs/cgroup{group}"))).min()
+/// The memory that the process's control `groups` (`/proc/self/cgroup`) and their ancestors below `root` still allow:
+/// groups of version 2, of version 1, and of both at once. In a container, the process's own group is the visible root,
+/// whatever its name outside.
+fn free_of_groups(groups: &str, root: &str) -> Option<u64> {
+    let free = |line: &str| {
+        let (controllers, own) = line.split_once(':')?.1.split_once(':')?;
+        let mounts: &[&str] = match controllers {
+            "" => &["", "/unified"],
+            _ if controllers.split(',').any(|name| name == "memory") => &["/memory"],
+            _ => return None,
+        };
+        let around = own.match_indices('/').map(|(end, _)| &own[..end]).chain([own]);
+        around
+            .flat_map(|group| mounts.iter().map(move |mount| format!("{root}{mount}{group}")))
+            .filter_map(|directory| free_of_group(&directory))
+            .min()
+    };
+    groups.lines().filter_map(free).min()
 }
 
-/// Cached files do not count, because the system drops them when memory is short.
+/// Cached files do not count, because the system drops them when memory is short. (sysinfo's `cgroup_limits` counts
+/// them, so a job that has written large films would be refused.)
 fn free_of_group(directory: &str) -> Option<u64> {
     let read = |name: &str| fs::read_to_string(format!("{directory}/{name}")).ok();
-    let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
+    // Version 2, or version 1.
+    let number = |names: [&str; 2]| names.into_iter().find_map(read)?.trim().parse::<u64>().ok();
     let stat = read("memory.stat").unwrap_or_default();
-    let bytes = |name| stat.lines().find_map(|line| line.strip_prefix(name)?.trim().parse::<u64>().ok());
-    let cached = ["active_file ", "inactive_file "].into_iter().filter_map(bytes).sum();
-    Some(number("memory.max")?.saturating_sub(number("memory.current")?.saturating_sub(cached)))
+    let bytes =
+        |name: &str| stat.lines().find_map(|line| line.strip_prefix(name)?.trim().parse::<u64>().ok());
+    // In version 1, only the totals include the groups below.
+    let cached =
+        |name: &str| bytes(&format!("total_{name} ")).or_else(|| bytes(&format!("{name} "))).unwrap_or(0);
+    let used = number(["memory.current", "memory.usage_in_bytes"])?;
+    let used = used.saturating_sub(cached("active_file") + cached("inactive_file"));
+    Some(number(["memory.max", "memory.limit_in_bytes"])?.saturating_sub(used))
 }
 
 #[cfg(test)]
@@ -194,19 +215,45 @@ mod tests {
         }
     }
 
+    /// Groups of version 2, of version 1 and of both, whose limits and use are in files at a path below the root.
     #[test]
-    fn group_allows_its_limit_less_uncached_use() {
-        let group = tempfile::tempdir().unwrap();
-        let free = |limit: &str, stat: &str| {
-            for (name, text) in [("memory.max", limit), ("memory.current", "700\n"), ("memory.stat", stat)] {
-                fs::write(group.path().join(name), text).unwrap();
+    fn groups_allow_the_smallest_limit_less_uncached_use() {
+        const V2: [&str; 2] = ["memory.max", "memory.current"];
+        const V1: [&str; 2] = ["memory.limit_in_bytes", "memory.usage_in_bytes"];
+        let free = |groups: &str, put: &[(&str, [&str; 2], &str, &str)]| {
+            let root = tempfile::tempdir().unwrap();
+            for (at, names, limit, stat) in put {
+                let at = root.path().join(at);
+                fs::create_dir_all(&at).unwrap();
+                for (name, text) in [(names[0], *limit), (names[1], "700\n"), ("memory.stat", *stat)] {
+                    fs::write(at.join(name), text).unwrap();
+                }
             }
-            free_of_group(group.path().to_str().unwrap())
+            free_of_groups(groups, root.path().to_str().unwrap())
         };
-        assert_eq!(free("1000\n", ""), Some(300));
-        assert_eq!(free("1000\n", "anon 5\nactive_file 150\ninactive_file 50\n"), Some(500));
-        assert_eq!(free("100\n", "active_file 0\n"), Some(0));
-        assert_eq!(free("max\n", ""), None);
+        let own = "0::/a/b\n";
+        assert_eq!(free(own, &[("a/b", V2, "1000\n", "")]), Some(300));
+        let cached = "anon 5\nactive_file 150\ninactive_file 50\n";
+        assert_eq!(free(own, &[("a/b", V2, "1000\n", cached), ("a", V2, "900\n", "")]), Some(200));
+        assert_eq!(free(own, &[("a/b", V2, "100\n", "active_file 0\n")]), Some(0));
+        assert_eq!(free(own, &[("a/b", V2, "max\n", ""), ("c", V2, "1\n", "")]), None);
+        assert_eq!(free(own, &[("", V2, "800\n", "")]), Some(100), "in a container");
+        let old = "5:cpu,cpuacct:/c\n4:memory:/a/b\n1:name=systemd:/c\n0::/\n";
+        let totals = "active_file 1\ntotal_active_file 150\ninactive_file 1\ntotal_inactive_file 50\n";
+        assert_eq!(
+            free(old, &[("memory/a/b", V1, "1000\n", totals), ("memory/c", V1, "1\n", "")]),
+            Some(500)
+        );
+        let unlimited = "9223372036854771712\n";
+        assert_eq!(
+            free(old, &[("memory/a", V1, "1000\n", ""), ("memory/a/b", V1, unlimited, "")]),
+            Some(300)
+        );
+        assert_eq!(
+            free("4:memory:/a\n0::/c\n", &[("unified/c", V2, "900\n", ""), ("memory/a", V1, "1000\n", "")]),
+            Some(200)
+        );
+        assert_eq!(free("", &[]), None);
         let meminfo = "MemTotal: 9 kB\nMemAvailable:    2048 kB\n";
         assert_eq!(in_bytes(meminfo, "MemAvailable:"), Some(2 << 20));
         assert_eq!(in_bytes("nothing", "MemAvailable:"), None);

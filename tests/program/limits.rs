@@ -100,6 +100,44 @@ fn failing_to_start_threads_is_an_error() {
     assert!(!message.contains("panicked") && !at.path().join("a.png").exists(), "{message}");
 }
 
+/// A group of version 1, as Slurm and Docker use on older systems, with 200 MB. Without the right to make one, nothing is
+/// tested.
+#[test]
+fn the_limit_of_a_control_group_is_never_reached() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let large = |range: &str, name: &str| {
+        render(at, &["--size", "2400x1350", "--sample-range", range, "--out", name]);
+    };
+    large("0..1", "a.exr");
+    large("1..2", "b.exr");
+    let own = fs::read_to_string("/proc/self/cgroup").unwrap();
+    let own = own.lines().find_map(|line| line.split_once(":memory:")).map_or("", |(_, own)| own);
+    let group = format!("/sys/fs/cgroup/memory{own}/weekender-test-{}", std::process::id());
+    if fs::create_dir(&group).is_err()
+        || fs::write(format!("{group}/memory.limit_in_bytes"), "200000000").is_err()
+    {
+        return eprintln!("no control group can be made: nothing was tested");
+    }
+    let batch = ["--batch", "--device", "cpu", "--size", "2400x1350", "--samples", "2", "--out", "c.png"];
+    let ways: [&[&str]; 5] = [
+        &["merge", "a.exr", "b.exr", "--out", "c.exr"],
+        &["compare", "a.exr", "b.exr"],
+        &[&batch[..], &["--denoise"]].concat(),
+        &["--batch", "--resume", "a.exr", "--size", "2400x1350", "--denoise", "--out", "c.png"],
+        &["--batch", "--device", "cpu", "--size", "4096x2304", "--samples", "1", "--out", "c.exr"],
+    ];
+    for way in ways {
+        let mut command = Command::new("sh");
+        command.args(["-c", "echo $$ > \"$0\"; exec \"$@\"", &format!("{group}/cgroup.procs"), PROGRAM]);
+        let output = command.args(way).current_dir(at).output().unwrap();
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{way:?}: {output:?}");
+        assert!(message.contains("control group") && message.len() < 400, "{message}");
+    }
+    fs::remove_dir(group).unwrap();
+}
+
 #[test]
 fn the_limit_in_force_is_named() {
     let at = TempDir::new().unwrap();

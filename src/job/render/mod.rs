@@ -130,15 +130,15 @@ impl RenderJob {
         Film::new(self.settings.width, self.settings.height)
     }
 
-    /// Returns an error if preparing, tracing and writing the job with `films` films of its size needs more memory than
-    /// is available.
+    /// Returns an error if preparing, tracing and writing the job with `films` films of its size, and `more` bytes per
+    /// pixel for its picture, needs more memory than is available.
     ///
     /// # Errors
     /// [`MemoryError`], with a remedy.
-    pub fn check_memory(&self, films: u64) -> Result<(), MemoryError> {
+    pub fn check_memory(&self, films: u64, more: u64) -> Result<(), MemoryError> {
         let RenderSettings { width, height, .. } = self.settings;
         let film = Film::bytes(width, height).saturating_mul(films);
-        let output = u64::from(width) * u64::from(height) * OUTPUT_BYTES_PER_PIXEL;
+        let output = u64::from(width) * u64::from(height) * (OUTPUT_BYTES_PER_PIXEL + more);
         let spheres = self.scene.spheres.len();
         memory::check(
             || format!("a picture of {width}x{height} of {spheres} spheres"),

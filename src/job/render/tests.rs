@@ -64,7 +64,7 @@ fn memory_check_counts_films_file_and_spheres() {
     }
     let settings = RenderSettings { width, height, ..RenderSettings::default() };
     let job = RenderJob::new(scene, Camera::BOOK, settings, Rules::FINISHED).unwrap();
-    let error = job.check_memory(FILMS).unwrap_err();
+    let error = job.check_memory(FILMS, 0).unwrap_err();
     assert_eq!(error.needed_bytes, pixels * (48 * FILMS + 4) + 3 * 400 + (64 << 20));
     assert_eq!(error.what, "a picture of 16384x16383 of 3 spheres");
 }

@@ -1,14 +1,27 @@
 //! Locks between programs. The system releases them however a program ends.
 
-use super::leftovers::{LOCK, PREFIX};
 use super::paths::{ShownPath, identity, resolved};
 use super::replace::patiently;
 use same_file::Handle;
-use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+
+/// Endings of [`hidden`] files: of a lock, and of an output that is being written.
+const LOCK: &str = ".lock";
+pub(super) const PART: &str = ".part";
+
+/// The hidden file with this ending beside `path`. Its name follows from that of `path`, so the next run that writes
+/// `path` takes over what a killed one left.
+pub(super) fn hidden(path: &Path, ending: &str) -> io::Result<PathBuf> {
+    let path = resolved(path)?;
+    let name = path.file_name().ok_or(ErrorKind::InvalidFilename)?.to_string_lossy();
+    // The longest names of most file systems have 255 bytes.
+    let rest = name.chars().count().saturating_sub(50);
+    let name: String = name.chars().skip(rest).collect();
+    Ok(path.with_file_name(format!(".weekender-{name}{ending}")))
+}
 
 /// How long a run waits for another that is about to end.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -46,11 +59,7 @@ impl FileLock {
             return Ok(FileLock(None));
         }
         let lock = || -> io::Result<(File, PathBuf)> {
-            let path = resolved(path)?;
-            let mut name = OsString::from(PREFIX);
-            name.push(path.file_name().ok_or(ErrorKind::InvalidFilename)?);
-            name.push(LOCK);
-            let path = path.with_file_name(name);
+            let path = hidden(path, LOCK)?;
             Ok((lock_path(&path, patience)?, path))
         };
         match lock() {
@@ -80,7 +89,7 @@ impl Drop for FileLock {
 /// be created or locked.
 pub fn lock_path(path: &Path, patience: Duration) -> io::Result<File> {
     patiently(patience, || {
-        let file = OpenOptions::new().write(true).create(true).truncate(false).open(path)?;
+        let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
         file.try_lock()?;
         // Its last owner may have just removed it.
         if is_at(&file, path)? { Ok(file) } else { Err(ErrorKind::WouldBlock.into()) }
@@ -138,8 +147,6 @@ mod tests {
             let null = || FileLock::take(Path::new("/dev/null"));
             assert!(null().is_ok() && null().is_ok());
         }
-        crate::system::files::check_writable(&at("other.png")).unwrap();
-        assert!(take("g.exr").is_err(), "a check clears up, but not what is in use");
         drop(lock);
         assert!(take("g.exr").is_ok());
         // A killed run leaves its lock file.

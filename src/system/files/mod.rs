@@ -1,6 +1,5 @@
 //! File access: inputs are checked for kind and length before they are read; outputs are written whole or not at all.
 
-mod leftovers;
 mod lock;
 mod paths;
 mod read;

@@ -1,13 +1,13 @@
 //! Output files written whole or not at all: first beside their destination, then renamed.
 
-use super::leftovers;
+use super::lock::{PART, hidden, lock_path};
 use super::paths::{STANDARD, ShownPath, resolved, unnamed};
 use super::sync::sync_directory;
 use std::fs::{self, File, Metadata, OpenOptions, Permissions};
 use std::io::{self, BufWriter, ErrorKind, Seek, Write};
 use std::path::{Component, Path, PathBuf, Prefix};
 use std::time::{Duration, Instant};
-use tempfile::NamedTempFile;
+use tempfile::{NamedTempFile, TempPath};
 
 /// How long to wait for another program to close the file to be replaced. Some programs briefly open each new file.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -40,7 +40,7 @@ fn remedy(path: &Path, reason: &io::Error) -> &'static str {
             "free some space, or choose another place; an existing file is left unchanged"
         }
         ErrorKind::FileTooLarge => "allow larger files (ulimit -f); an existing file is left unchanged",
-        ErrorKind::ResourceBusy => "close it there, or choose another place",
+        ErrorKind::ResourceBusy => "close it there, wait for its end, or choose another place",
         ErrorKind::AlreadyExists => "move it away, or choose another place",
         ErrorKind::InvalidFilename | ErrorKind::InvalidInput => "choose another name",
         _ => "choose another place",
@@ -68,8 +68,7 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), WriteError> {
     replace_file(path, |writer| writer.write_all(text.as_bytes()))
 }
 
-/// Checks whether [`replace_file`] could write `path`, without changing an existing file or leaving a new one. Also
-/// removes unfinished files that killed runs left in the directory.
+/// Checks whether [`replace_file`] could write `path`, without changing an existing file or leaving a new one.
 ///
 /// # Errors
 /// [`WriteError`]: the directory does not exist, a directory has that name, permission is missing, the file is marked
@@ -80,10 +79,9 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
         // Opening a pipe would wait for its reader, and closing it would end the reader's input.
         Target::Device { is_pipe: true } => Ok(()),
         Target::Device { .. } => OpenOptions::new().write(true).open(path).map(drop),
-        Target::File { path, directory, old } => {
-            leftovers::remove_from(&directory);
+        Target::File { path, old, .. } => {
             let is_there = old.is_some();
-            new_file_in(&directory, old)?.close()?;
+            new_file_for(&path, old)?.close()?;
             if is_there { once_closed(|| can_be_replaced(&path)) } else { Ok(()) }
         }
     };
@@ -215,8 +213,21 @@ pub(super) fn is_pipe(_: &Metadata) -> bool {
     false
 }
 
-fn new_file_in(directory: &Path, old: Option<Permissions>) -> io::Result<NamedTempFile> {
-    let file = leftovers::create_in(directory)?;
+/// An empty file beside `path`, locked so that no other run writes it, too. Dropping it deletes the file.
+fn new_file_for(path: &Path, old: Option<Permissions>) -> io::Result<NamedTempFile> {
+    let part = hidden(path, PART)?;
+    if fs::symlink_metadata(&part).is_ok_and(|found| !found.is_file()) {
+        return Err(io::Error::new(ErrorKind::AlreadyExists, format!("{} is in the way", part.shown())));
+    }
+    let file = match lock_path(&part, PATIENCE) {
+        Err(error) if error.kind() == ErrorKind::WouldBlock => {
+            return Err(io::Error::new(ErrorKind::ResourceBusy, "another program is writing it"));
+        }
+        // Where the file system has no locks, runs are not kept apart.
+        locked => locked.or_else(|_| File::create(&part))?,
+    };
+    file.set_len(0)?;
+    let file = NamedTempFile::from_parts(file, TempPath::try_from_path(part)?);
     if let Some(old) = old.filter(|_| HAVE_PERMISSIONS) {
         file.as_file().set_permissions(old)?;
     }
@@ -239,7 +250,7 @@ fn try_write(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Resul
         }
         Target::Device { .. } => fill(&OpenOptions::new().write(true).open(path)?),
         Target::File { path, directory, old } => {
-            let new = new_file_in(&directory, old)?;
+            let new = new_file_for(&path, old)?;
             fill(new.as_file())?;
             // Without this, the file could be empty after a crash that follows the rename.
             new.as_file().sync_data()?;
@@ -296,5 +307,44 @@ mod tests {
         for name in ["nul-", "film.exr", "C:\\a folder\\console"] {
             assert!(!is_device(Path::new(name)), "{name}");
         }
+    }
+}
+
+#[cfg(test)]
+mod tests_of_parts {
+    use super::*;
+
+    /// The file beside the output has a name that follows from it, so nothing has to be searched for.
+    #[test]
+    fn the_next_write_takes_over_what_a_killed_one_left() {
+        let directory = tempfile::tempdir().unwrap();
+        let (path, part) = (directory.path().join("g.png"), directory.path().join(".weekender-g.png.part"));
+        fs::write(&part, "half a picture, longer than a whole one").unwrap();
+        write_text(&path, "whole").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "whole");
+        assert!(!part.exists());
+        let used = new_file_for(&path, None).unwrap();
+        let message = write_text(&path, "second").unwrap_err().to_string();
+        assert!(message.contains("another program is writing it"), "{message}");
+        drop(used);
+        let long = directory.path().join(format!("{}.png", "ö".repeat(120)));
+        write_text(&long, "long").unwrap();
+        assert_eq!(fs::read_to_string(&long).unwrap(), "long");
+        fs::create_dir(&part).unwrap();
+        assert!(check_writable(&path).unwrap_err().to_string().contains("in the way"));
+    }
+
+    #[test]
+    fn writers_of_one_file_take_turns() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("g.png");
+        std::thread::scope(|scope| {
+            for text in ["a", "bb", "ccc"] {
+                let path = &path;
+                scope.spawn(move || (0..20).for_each(|_| write_text(path, text).unwrap()));
+            }
+        });
+        assert!(["a", "bb", "ccc"].contains(&fs::read_to_string(&path).unwrap().as_str()));
+        assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 1);
     }
 }

@@ -69,6 +69,8 @@ fn signals_at_any_moment_leave_a_resumable_film() {
         if at.join("g.exr").exists() {
             films += 1;
             continues_to_the_same_bits(at, "g.exr");
+            let again = ["--samples", "1", "--checkpoint", "g.exr", "--continue", "--out", "g.png"];
+            succeeds(&mut batch(at, "off", &again));
             assert!(names(at).iter().all(|name| !name.ends_with(".part")), "the next run clears up");
         }
     }
