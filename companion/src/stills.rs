@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 use weekender::batch::{Event, Studio};
-use weekender::film::SOFTWARE;
+use weekender::film::{SOFTWARE, key};
 use weekender::job::output::write_small_png;
 use weekender::job::recipe::Recipe;
 use weekender::job::saved::is_whole_frame;
@@ -71,7 +71,10 @@ impl Task {
 
     /// A full still satisfies a quick order.
     fn is_done(&self) -> bool {
-        let is_made_of = |recipe: &Recipe| is_whole_frame(&self.path, recipe, SOFTWARE);
+        let is_made_of = |recipe: &Recipe| {
+            let samples = recipe.samples_per_pixel.to_string();
+            is_whole_frame(&self.path, recipe, SOFTWARE, (key::SAMPLES, &samples))
+        };
         is_made_of(&self.recipe) || is_made_of(&recipe(self.stage, false))
     }
 

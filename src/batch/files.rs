@@ -15,6 +15,7 @@ use anyhow::anyhow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 /// The files of a render. No other run may write its films.
 pub(super) struct Files {
@@ -39,13 +40,14 @@ pub(super) struct Written {
 }
 
 impl Files {
-    /// Locks the films of a render. A film to be resumed must be read after this.
+    /// Locks the films of a render, and the file of a frame. A film to be resumed must be read after this.
     ///
     /// # Errors
-    /// [`Failure::Input`] if another run writes one of them.
-    pub fn lock(options: BatchOptions) -> Result<Files, Failure> {
+    /// [`Failure::Input`] if another run writes one of them for as long as `patience`.
+    pub fn lock(options: BatchOptions, patience: Duration) -> Result<Files, Failure> {
         let lock = |output: &Output| {
-            let film = (output.format == OutputFormat::Exr).then(|| LockedFilm::new(&output.path));
+            let is_locked = output.format == OutputFormat::Exr || options.frame.is_some();
+            let film = is_locked.then(|| LockedFilm::new(&output.path, patience));
             Ok(film.transpose()?.map(Mutex::new))
         };
         let films = options.outputs.iter().map(lock).collect::<Result<_, LockedError>>();
@@ -115,14 +117,14 @@ impl Files {
         description: &Description,
     ) -> Result<Option<String>, String> {
         let Output { path, format, .. } = output;
-        let write = || match file {
+        let write = || match file.filter(|_| *format == OutputFormat::Exr) {
             Some(file) => {
                 let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
                 file.save(film, denoised, description).map_err(|error| error.to_string())
             }
             None => {
-                let (picture, transfer) = (denoised.unwrap_or(film), self.options.job.rules().transfer);
-                let wrote = write_image_as(path, *format, picture, transfer, description);
+                let transfer = self.options.job.rules().transfer;
+                let wrote = write_image_as(path, *format, (film, denoised), transfer, description);
                 wrote.map(|()| None).map_err(|error| error.to_string())
             }
         };
@@ -156,17 +158,20 @@ impl Files {
         for (output, file) in options.outputs.iter().zip(&self.films) {
             say(&output.path);
             let picture = denoised.as_ref().map(|denoised| &denoised.film).filter(|_| !output.is_checkpoint);
-            let description = if file.is_some() { &description } else { &of_picture };
+            let description = if output.is_checkpoint { &description } else { &of_picture };
             match self.save(output, file.as_ref(), (film, picture), description) {
                 Ok(note) => {
                     is_film_kept |= file.is_some();
-                    written.files.push(output.path.clone());
-                    written.notes.extend(note);
+                    match note {
+                        // The file holds more, and is left unchanged.
+                        Some(note) => written.notes.push(note),
+                        None => written.files.push(output.path.clone()),
+                    }
                 }
                 Err(reason) => written.failures.push(reason),
             }
         }
-        if !written.failures.is_empty() && !is_film_kept {
+        if !written.failures.is_empty() && !is_film_kept && options.frame.is_none() {
             match rescue(&directories(options), &options.recipe.name, film, &description) {
                 Ok(path) => {
                     let rescued = path.shown();
@@ -184,7 +189,13 @@ impl Files {
     fn described(&self, film: &Film, status: &Status) -> Description {
         let Files { options, seconds_before, .. } = self;
         let mut description = describe(&options.recipe, options.stage, film, status, *seconds_before);
-        description.set(key::COMMAND, &options.command);
+        if !options.command.is_empty() {
+            description.set(key::COMMAND, &options.command);
+        }
+        if let Some(frame) = options.frame {
+            description.set(key::FRAME, frame);
+            description.set(key::UNTIL, options.until());
+        }
         description
     }
 }
@@ -209,7 +220,8 @@ mod tests {
     fn put(path: &Path, render: &BatchOptions, samples: Range<u64>) -> Film {
         let mut film = render.job.new_film();
         film.record(samples, 0).unwrap();
-        let description = Files::lock(render.clone()).unwrap().described(&film, &Status::default());
+        let description =
+            Files::lock(render.clone(), Duration::ZERO).unwrap().described(&film, &Status::default());
         checkpoint::save(path, &film, &description).unwrap();
         film
     }
@@ -217,7 +229,8 @@ mod tests {
     fn write_two_samples(render: &BatchOptions) -> (Film, Written, String) {
         let mut film = render.job.new_film();
         film.record(0..2, 0).unwrap();
-        let written = Files::lock(render.clone()).unwrap().write(&film, &Status::default(), |_| {});
+        let written =
+            Files::lock(render.clone(), Duration::ZERO).unwrap().write(&film, &Status::default(), |_| {});
         let failures = written.failures.join("; ");
         (film, written, failures)
     }
@@ -261,7 +274,7 @@ mod tests {
         {
             let render = options(flags);
             let held = SavedFilm { film: held.clone(), seconds: None };
-            let mut files = Files::lock(render.clone()).unwrap();
+            let mut files = Files::lock(render.clone(), Duration::ZERO).unwrap();
             assert!(files.check(render.resume.is_some().then_some(&held)).unwrap().is_empty());
             for (end, expected) in [(8, 32), (40, 40)] {
                 let mut film = render.job.new_film();
@@ -283,7 +296,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let film = directory.path().join("k.exr").to_str().unwrap().to_owned();
         put(Path::new(&film), &options(&[]), 0..32);
-        let check = |flags: &[&str]| Files::lock(options(flags)).unwrap().check(None);
+        let check = |flags: &[&str]| Files::lock(options(flags), Duration::ZERO).unwrap().check(None);
         let warned = |flags: &[&str]| check(flags).unwrap().join("; ");
         assert_eq!(warned(&["--out", &film, "--samples", "32"]), "");
         assert!(warned(&["--out", &film, "--samples", "8"]).contains("32 samples"));

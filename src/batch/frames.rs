@@ -1,67 +1,71 @@
-//! `--frames`: the frames of an animation. Each is written as soon as it is rendered, and complete ones are kept, so
-//! the same command continues an interrupted run.
+//! `--frames`: the frames of an animation. Each is a picture, written as soon as it is rendered, and complete ones are
+//! kept, so the same command continues an interrupted run. Runs in one directory share the frames.
 
-use super::picture::display;
-use super::studio::{Event, Studio};
-use super::{Line, ended, report};
-use crate::backends::BackendChoice;
-use crate::film::key;
-use crate::job::output::write_image;
-use crate::job::recipe::Recipe;
-use crate::job::render::RenderJob;
+use super::files::Files;
+use super::picture::{self, Screen};
+use super::studio::Studio;
+use super::{BatchOptions, Line, Output, ended, report};
+use crate::film::{SOFTWARE, key};
 use crate::job::saved::is_whole_frame;
-use crate::progressive::Phase;
-use crate::progressive::describe::{SOFTWARE, counted, describe, seconds};
+use crate::progressive::describe::{counted, seconds};
 use crate::scene::animation::CameraPath;
-use crate::stages::Stage;
 use crate::system::console;
 use crate::system::failure::Failure;
-use crate::system::files::{ShownPath, check_writable, make_directory};
+use crate::system::files::{check_writable, make_directory};
 use crate::system::interrupt::Interrupt;
-use crate::system::journal;
-use crate::system::terminal::{Display, ProgressChoice};
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result};
 use serde_json::{Value, json};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Options of `--batch --frames`.
 #[derive(Debug)]
 pub struct FramesOptions {
-    /// The scene and its settings. Each frame replaces its camera.
-    pub recipe: Recipe,
-    /// The validated job of the recipe.
-    pub job: RenderJob,
-    /// The stage that it comes from.
-    pub stage: Option<&'static Stage>,
+    /// The picture of each frame, except for its camera. Its output has a pattern for a name.
+    pub picture: BatchOptions,
     /// How the camera moves. The camera of every frame is valid.
     pub path: CameraPath,
     /// Numbers of the frames, at least one.
     pub frames: Range<u32>,
     /// The files of the frames.
     pub names: FrameNames,
-    pub backend: BackendChoice,
-    pub progress: ProgressChoice,
-    pub json: Option<PathBuf>,
-    /// The command line, as files record it; `None` in the window.
-    pub command: Option<String>,
 }
 
 impl FramesOptions {
-    /// Checks the camera of every frame.
+    /// Checks the camera of every frame. Returns a warning if the picture turns over on the way.
     ///
     /// # Errors
     /// The first frame that cannot be rendered, and why.
-    pub fn check(&self) -> Result<()> {
-        let FramesOptions { job, path, frames, .. } = self;
+    pub fn check(&self) -> Result<Option<String>> {
+        let FramesOptions { picture: BatchOptions { job, .. }, path, frames, .. } = self;
         for frame in frames.clone() {
             job.seen_by(path.camera(frame), *job.settings()).with_context(|| format!("frame {frame}"))?;
         }
-        Ok(())
+        let turns_over = |frame: &u32| {
+            let [before, after] = [*frame, frame + 1].map(|frame| path.camera(frame).basis());
+            before.w.dot(after.w) > LEAST_COSINE && before.u.dot(after.u) < LEAST_COSINE
+        };
+        let mut turns = (frames.start..frames.end - 1).filter(turns_over);
+        let first = turns.next().filter(|_| matches!(path, CameraPath::Keyframes(_)));
+        Ok(first.map(|first| {
+            let last = turns.last().unwrap_or(first) + 1;
+            format!(
+                "the picture turns over between the frames {first} and {last}: the camera passes over or under its \
+                 look_at, where vup no longer tells which way is up; give the keyframes around them a vup of their own"
+            )
+        }))
     }
 }
+
+/// Of 45 degrees: a picture that turns more about its centre from one frame to the next, though the camera looks in
+/// nearly the same direction, turns over.
+const LEAST_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// Pause before frames are looked at again that another run renders.
+const PAUSE: Duration = Duration::from_millis(100);
 
 /// Renders the missing frames. A signal drops the frame in progress.
 ///
@@ -69,15 +73,14 @@ impl FramesOptions {
 /// [`Failure::Input`] if nothing was rendered; [`Failure::BrokeOff`] if a render failed but earlier frames are
 /// complete; [`Failure::Run`] otherwise.
 pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
-    check(&options)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
-    let mut run = Run::new(&options, &interrupt);
+    let mut run = Run::new(&options, &interrupt)?;
     let failure = match run.render_all(|_| {}) {
         Err(failure @ Failure::Input(_)) => return Err(failure),
         outcome => outcome.err(),
     };
-    run.display.clear();
-    let figures = report(&run.json(), &LINES, options.json.as_deref(), None);
+    run.screen.display.clear();
+    let figures = report(&run.json(), &LINES, options.picture.json.as_deref(), None);
     if failure.is_none() && run.done() < options.frames.len() as u32 {
         console::note("run the same command again to continue");
     }
@@ -94,17 +97,7 @@ pub fn write_frames(
     interrupt: &Interrupt,
     look: impl FnMut(u32),
 ) -> Result<(), Failure> {
-    check(options)?;
-    Run::new(options, interrupt).render_all(look)
-}
-
-fn check(options: &FramesOptions) -> Result<(), Failure> {
-    make_directory(&options.names.directory).map_err(Failure::Input)?;
-    let first = options.names.path(options.frames.start);
-    for path in [Some(first.as_path()), options.json.as_deref()].into_iter().flatten() {
-        check_writable(path).map_err(Failure::input)?;
-    }
-    options.job.check_memory(1, 0).map_err(Failure::input)
+    Run::new(options, interrupt)?.render_all(look)
 }
 
 const LINES: [Line; 4] = [
@@ -118,26 +111,40 @@ const LINES: [Line; 4] = [
 struct Run<'a> {
     options: &'a FramesOptions,
     interrupt: &'a Interrupt,
-    display: Display,
+    studio: Option<Studio<'a>>,
+    screen: Screen,
     begin: Instant,
     rendered: u32,
     kept: u32,
+    /// The first and the last frame that are done.
+    ends: Option<[u32; 2]>,
     rendering: Duration,
-    warnings: Vec<String>,
 }
 
 impl<'a> Run<'a> {
-    fn new(options: &'a FramesOptions, interrupt: &'a Interrupt) -> Self {
-        Run {
+    /// Checks what could otherwise fail after rendering.
+    fn new(options: &'a FramesOptions, interrupt: &'a Interrupt) -> Result<Self, Failure> {
+        let FramesOptions { picture, frames, names, .. } = options;
+        make_directory(&names.directory).map_err(Failure::Input)?;
+        let first = names.path(frames.start);
+        for path in [Some(first.as_path()), picture.json.as_deref()].into_iter().flatten() {
+            check_writable(path).map_err(Failure::input)?;
+        }
+        picture.check_memory()?;
+        let mut screen = Screen::new(picture, frames.len() as u64);
+        options.check().map_err(Failure::Input)?.iter().for_each(|warning| screen.warn(warning));
+        let (begin, rendering) = (Instant::now(), Duration::ZERO);
+        Ok(Run {
             options,
             interrupt,
-            display: display(options.progress, options.frames.len() as u64, &options.recipe.name),
-            begin: Instant::now(),
+            studio: None,
+            screen,
+            begin,
             rendered: 0,
             kept: 0,
-            rendering: Duration::ZERO,
-            warnings: Vec::new(),
-        }
+            ends: None,
+            rendering,
+        })
     }
 
     fn done(&self) -> u32 {
@@ -145,96 +152,94 @@ impl<'a> Run<'a> {
     }
 
     fn render_all(&mut self, mut look: impl FnMut(u32)) -> Result<(), Failure> {
-        let mut studio = None;
-        for frame in self.options.frames.clone() {
-            look(self.done());
-            if self.interrupt.is_set() {
-                return Ok(());
+        let mut missing: Vec<u32> = self.options.frames.clone().collect();
+        while !missing.is_empty() {
+            let mut left = Vec::new();
+            for frame in missing {
+                look(self.done());
+                if self.interrupt.is_set() {
+                    return Ok(());
+                }
+                if self.finish(frame)? {
+                    let [first, last] = self.ends.unwrap_or([frame; 2]);
+                    self.ends = Some([first.min(frame), last.max(frame)]);
+                } else {
+                    left.push(frame);
+                }
             }
-            let recipe = self.options.recipe.at_frame(&self.options.path, frame);
-            let path = self.options.names.path(frame);
-            if is_whole_frame(&path, &recipe, SOFTWARE) {
-                log::debug!("kept {}", path.display());
-                self.kept += 1;
-                continue;
+            missing = left;
+            if !missing.is_empty() && !self.interrupt.is_set() {
+                std::thread::sleep(PAUSE);
             }
-            let studio = match &mut studio {
-                Some(studio) => studio,
-                none => none.insert(Studio::open(&self.options.backend, self.interrupt)?),
-            };
-            let begin = Instant::now();
-            let rendered = self.render(studio, frame, &recipe, &path);
-            if !rendered.map_err(|error| broken_off(error, frame, self.done()))? {
-                return Ok(());
-            }
-            self.rendered += 1;
-            self.rendering += begin.elapsed();
         }
         Ok(())
     }
 
-    /// Renders and writes a frame; `false` after a signal.
-    fn render(
-        &mut self,
-        studio: &mut Studio,
-        frame: u32,
-        recipe: &Recipe,
-        path: &Path,
-    ) -> anyhow::Result<bool> {
+    /// Renders and writes a frame, unless it is there. Returns `false` after a signal, or if another run renders it.
+    fn finish(&mut self, frame: u32) -> Result<bool, Failure> {
+        let FramesOptions { picture, path, names, .. } = self.options;
+        let recipe = picture.recipe.at_frame(path, frame);
         // All frames share the scene, so it is validated and prepared once if the camera allows.
-        let job = self.options.job.seen_by(recipe.camera, *self.options.job.settings())?;
-        let plan = Studio::plan(recipe.samples_per_pixel);
-        let (status, film) = studio.render(job, plan, None, |event| match event {
-            Event::Warning(warning) if self.warnings.iter().any(|known| known == warning) => {}
-            Event::Warning(warning) => {
-                self.display.warn(warning);
-                self.warnings.push(warning.to_owned());
+        let job = picture.job.seen_by(recipe.camera, *picture.job.settings()).map_err(Failure::run)?;
+        let file = names.path(frame);
+        let outputs = picture.outputs.iter().map(|output| Output { path: file.clone(), ..output.clone() });
+        let options =
+            BatchOptions { recipe, job, frame: Some(frame), outputs: outputs.collect(), ..picture.clone() };
+        let until = options.until();
+        let is_whole =
+            |options: &BatchOptions| is_whole_frame(&file, &options.recipe, SOFTWARE, (key::UNTIL, &until));
+        if is_whole(&options) {
+            self.kept += 1;
+            return Ok(true);
+        }
+        let Ok(files) = Files::lock(options, Duration::ZERO) else { return Ok(false) };
+        // Another run may have just finished it.
+        if is_whole(&files.options) {
+            self.kept += 1;
+            return Ok(true);
+        }
+        let studio = match &mut self.studio {
+            Some(studio) => studio,
+            none => none.insert(Studio::open(&picture.backend, self.interrupt)?),
+        };
+        let (begin, done, count) =
+            (Instant::now(), self.rendered + self.kept, self.options.frames.len() as u32);
+        let left = match self.rendered {
+            0 => String::new(),
+            rendered => {
+                format!(", {} left", seconds((self.rendering / rendered * (count - done)).as_secs_f64()))
             }
-            Event::Stopping => {
-                self.display.say(&format!("dropping frame {frame}; the frames before it are complete"));
-            }
-            Event::Status(_, status) => {
-                let (done, count) = (self.done(), self.options.frames.len() as u32);
-                let left = match self.rendered {
-                    0 => String::new(),
-                    rendered => {
-                        let left = self.rendering / rendered * (count - done);
-                        format!(", {} left", seconds(left.as_secs_f64()))
-                    }
-                };
-                self.display.update(u64::from(done), || {
+        };
+        let (rendered, outcome) = picture::render(
+            &Arc::new(files),
+            None,
+            &mut self.screen,
+            studio,
+            self.interrupt,
+            |display, status| {
+                display.update(u64::from(done), || {
                     let samples = status.samples_per_pixel;
                     format!("frame {frame}: {done} of {count} frames done, {samples} spp{left}")
                 });
+            },
+        );
+        match outcome {
+            Err(Failure::Input(error) | Failure::Run(error) | Failure::BrokeOff(error)) => {
+                return Err(broken_off(error, frame, done));
             }
-        });
-        if let Phase::Failed(reason) = &status.phase {
-            journal::write_report();
-            return Err(anyhow!("{reason}"));
+            outcome => outcome?,
         }
-        let whole = film.filter(|film| film.sample_count() >= recipe.samples_per_pixel);
-        let Some(film) = whole else { return Ok(false) };
-        let _writing = self.interrupt.while_writing(path.shown());
-        let mut description = describe(recipe, self.options.stage, &film, &status, Some(0.0));
-        description.set(key::FRAME, frame);
-        if let Some(command) = &self.options.command {
-            description.set(key::COMMAND, command.clone());
+        if rendered.written.files.is_empty() {
+            return Ok(false);
         }
-        write_image(path, &film, recipe.rules.transfer, &description)?;
-        log::info!("wrote {}", path.display());
+        self.rendered += 1;
+        self.rendering += begin.elapsed();
         Ok(true)
     }
 
-    /// The first and the last finished file. Frames finish in order.
-    fn files(&self) -> Option<[PathBuf; 2]> {
-        let FramesOptions { frames, names, .. } = self.options;
-        let last = frames.start + self.done().checked_sub(1)?;
-        Some([frames.start, last].map(|frame| names.path(frame)))
-    }
-
     fn json(&self) -> Value {
-        let FramesOptions { recipe, frames, names, .. } = self.options;
-        let [first, last] = self.files().map_or([None, None], |files| files.map(Some));
+        let FramesOptions { picture: BatchOptions { recipe, .. }, frames, names, .. } = self.options;
+        let file = |end: usize| Some(names.path(self.ends?[end]).to_string_lossy().into_owned());
         json!({
             "scene": recipe.name,
             "width": recipe.settings.width,
@@ -249,9 +254,9 @@ impl<'a> Run<'a> {
             "rendering_seconds": self.rendering.as_secs_f64(),
             "total_seconds": self.begin.elapsed().as_secs_f64(),
             "directory": names.directory.to_string_lossy(),
-            "first_file": first.map(|path| path.to_string_lossy().into_owned()),
-            "last_file": last.map(|path| path.to_string_lossy().into_owned()),
-            "warnings": self.warnings,
+            "first_file": file(0),
+            "last_file": file(1),
+            "warnings": self.screen.warnings,
         })
     }
 }
@@ -262,8 +267,7 @@ fn broken_off(error: anyhow::Error, frame: u32, done: u32) -> Failure {
         return Failure::Run(error);
     }
     let done = counted(u64::from(done), "frame");
-    let context =
-        format!("frame {frame} failed; {done} before it are kept; run the same command again to continue");
+    let context = format!("frame {frame} failed; {done} are kept; run the same command again to continue");
     Failure::BrokeOff(error.context(context))
 }
 

@@ -106,7 +106,7 @@ mod tests {
         let path = directory.path().join("kept/film.exr");
         let flags = ["--checkpoint", path.to_str().unwrap(), "--every", "0.1s", "--samples", "4294967296"];
         let render = options(&flags);
-        let mut keeper = Keeper::new(&Arc::new(Files::lock(render.clone()).unwrap()));
+        let mut keeper = Keeper::new(&Arc::new(Files::lock(render.clone(), Duration::ZERO).unwrap()));
         let mut progressive = Progressive::spawn().unwrap();
         let backend = crate::backends::BackendChoice::Reference { threads: Some(1) };
         let mut warnings = Vec::new();

@@ -1,7 +1,8 @@
 //! `weekender merge`: adds films of the same picture, and says which of the requested samples are missing.
 
-use crate::film::{CheckpointError, Film, FilmSum, SampleRanges, checkpoint};
-use crate::job::output::{OutputFormat, write_image};
+use crate::denoise;
+use crate::film::{CheckpointError, Film, FilmSum, SampleRanges, checkpoint, key};
+use crate::job::output::{OutputFormat, write_image_as};
 use crate::job::recipe::file;
 use crate::job::saved::{Replaced, same_job};
 use crate::progressive::describe::counted;
@@ -26,8 +27,12 @@ pub struct MergeOptions {
     pub out: Vec<PathBuf>,
     /// Samples per pixel that the picture should have.
     pub samples: Option<u64>,
+    /// Whether the picture is denoised.
+    pub denoise: bool,
     /// How commands call this program.
     pub program: String,
+    /// The command line, as files record it.
+    pub command: String,
 }
 
 /// Merges the films, or tells what is missing.
@@ -45,7 +50,7 @@ pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
     let _locks = locks.collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
     let (sum, left_out) = add_up(options).map_err(Failure::Input)?;
     let missing = options.samples.map_or_else(Vec::new, |samples| missing(&sum, &left_out, samples));
-    let wrote = write(&options.out, &sum)?;
+    let wrote = write(options, &sum)?;
 
     let (samples, from) = (sum.film().samples(), counted(sum.parts().len() as u64, "film"));
     let mut lines = vec![format!("{} per pixel ({samples}) from {from}", counted(samples.count(), "sample"))];
@@ -67,7 +72,9 @@ fn add_up(options: &MergeOptions) -> anyhow::Result<(FilmSum, Vec<LeftOut<'_>>)>
     let heads = options.films.iter().filter_map(|film| checkpoint::read_head(film).ok());
     let film = heads.map(|head| Film::bytes(head.width, head.height)).max().unwrap_or(0);
     let count = options.films.len().min(2) as u64;
-    memory::check(|| "merging these films".to_owned(), film * count, "merge them on a larger machine")?;
+    let denoising = if options.denoise { denoise::BYTES_PER_PIXEL } else { 0 };
+    let bytes = film * count + film / Film::bytes(1, 1) * denoising;
+    memory::check(|| "merging these films".to_owned(), bytes, "merge them on a larger machine")?;
     let (mut sum, mut left_out) = (None::<FilmSum>, Vec::new());
     for film in &options.films {
         let added = match &mut sum {
@@ -113,8 +120,9 @@ fn missing(sum: &FilmSum, left_out: &[LeftOut], end: u64) -> Vec<(Range<u64>, Pa
 
 /// Writes the sum, and returns a line for each file. Warns of samples that are lost because it replaces a film that has
 /// others.
-fn write(out: &[PathBuf], sum: &FilmSum) -> Result<String, Failure> {
-    let (film, description) = (sum.film(), sum.description());
+fn write(options: &MergeOptions, sum: &FilmSum) -> Result<String, Failure> {
+    let (out, film, mut description) = (&options.out, sum.film(), sum.description());
+    description.set(key::COMMAND, &options.command);
     let recipe = file::parse(description.recipe(), "the films' recipe").map_err(Failure::input)?;
     let is_kept = |samples: &SampleRanges| film.samples().contains(samples);
     for out in out {
@@ -122,8 +130,22 @@ fn write(out: &[PathBuf], sum: &FilmSum) -> Result<String, Failure> {
             console::note(&format!("warning: {warning}"));
         }
     }
-    let transfer = recipe.rules.transfer;
-    out.iter().try_for_each(|out| write_image(out, film, transfer, &description)).map_err(Failure::run)?;
+    let denoised = match options.denoise.then(|| denoise::of_film(film)) {
+        Some(Err(reason)) => {
+            console::note(&format!("warning: the picture is not denoised: {reason}"));
+            None
+        }
+        denoised => denoised.and_then(Result::ok),
+    };
+    if let Some(denoised) = &denoised {
+        description.set(key::DENOISED, denoised.error.words());
+    }
+    let (transfer, denoised) = (recipe.rules.transfer, denoised.map(|denoised| denoised.film));
+    for out in out {
+        OutputFormat::from_path(out)
+            .and_then(|format| write_image_as(out, format, (film, denoised.as_ref()), transfer, &description))
+            .map_err(Failure::Run)?;
+    }
     Ok(out.iter().map(|out| format!("wrote {}\n", out.shown())).collect())
 }
 

@@ -21,21 +21,23 @@ use crate::job::output::OutputFormat;
 use crate::job::recipe::{Recipe, file};
 use crate::job::render::RenderJob;
 use crate::job::saved::{self, OpenError, SavedFilm};
-use crate::progressive::{EndReason, Phase, Plan, Status};
+use crate::progressive::describe::counted;
+use crate::progressive::{EndReason, Phase, Plan, Status, Stop};
 use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
 use crate::system::console;
 use crate::system::failure::Failure;
-use crate::system::files::{STANDARD, ShownPath, check_replaceable, check_writable, write_text};
+use crate::system::files::{FileLock, STANDARD, ShownPath, check_replaceable, check_writable, write_text};
 use crate::system::interrupt::Interrupt;
-use crate::system::terminal::{self, ProgressChoice, print, print_beside};
+use crate::system::terminal::{self, Display, ProgressChoice, print, print_beside};
 use anyhow::Context;
 use files::{Files, Written};
+use picture::{Rendered, STEPS, Screen, show};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use summary::{PICTURE, figures};
 
 /// Options of `--batch`.
@@ -61,8 +63,10 @@ pub struct BatchOptions {
     pub backend: BackendChoice,
     pub progress: ProgressChoice,
     pub json: Option<PathBuf>,
-    /// The command line, as files record it.
+    /// The command line, as files record it; empty in the window.
     pub command: String,
+    /// The number of the picture in an animation.
+    pub frame: Option<u32>,
 }
 
 /// A file of a picture.
@@ -78,6 +82,24 @@ impl BatchOptions {
     pub fn checkpoint(&self) -> Option<&Path> {
         self.outputs.iter().find(|output| output.is_checkpoint).map(|output| output.path.as_path())
     }
+
+    /// When the render ends and what is made of it, in words.
+    fn until(&self) -> String {
+        let Stop { samples, seconds, noise, .. } = self.plan.stop;
+        let parts = [
+            samples.map(|samples| counted(samples, "sample")),
+            seconds.map(|seconds| format!("{seconds} s")),
+            noise.map(|noise| format!("error {noise}")),
+            self.denoise.then(|| "denoised".to_owned()),
+        ];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    }
+
+    /// Checks whether the peak fits into memory.
+    fn check_memory(&self) -> Result<(), Failure> {
+        let denoising = if self.denoise { denoise::BYTES_PER_PIXEL } else { 0 };
+        self.job.check_memory(1, denoising).map_err(Failure::input)
+    }
 }
 
 /// Renders and writes everything that the options ask for.
@@ -87,10 +109,12 @@ impl BatchOptions {
 /// are in its files; [`Failure::Run`] otherwise.
 pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     check_before(&options)?;
-    let mut files = Files::lock(options)?;
+    let mut files = Files::lock(options, FileLock::PATIENCE)?;
     let resumed = resumed(&files.options)?;
-    if let Some(saved) = resumed.as_ref().filter(|saved| is_complete(&files.options, &saved.film)) {
-        let reported = report_picture(&files.options, &figures_of_complete(&files.options, &saved.film));
+    if resumed.as_ref().is_some_and(|saved| is_complete(&files.options, &saved.film))
+        && let Some(saved) = resumed
+    {
+        let reported = report_picture(&files.options, &figures_of_complete(&files.options, saved.film));
         return reported.map(|()| ExitCode::SUCCESS).map_err(Failure::Run);
     }
     let warnings = files.check(resumed.as_ref())?;
@@ -101,8 +125,13 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     if let Some(path) = &options.save_scene {
         write_text(path, &file::to_toml(&options.recipe)).map_err(Failure::run)?;
     }
-    let (figures, outcome) = picture::render(&files, film, &warnings, &mut studio, &interrupt);
-    ended(outcome.err(), report_picture(options, &figures), &interrupt)
+    let (mut screen, begin) = (Screen::new(options, STEPS), Instant::now());
+    warnings.iter().for_each(|warning| screen.warn(warning));
+    let show = |display: &mut Display, status: &Status| show(display, &options.plan, status, begin.elapsed());
+    let (mut done, outcome) = picture::render(&files, film, &mut screen, &mut studio, &interrupt, show);
+    screen.display.clear();
+    done.status.messages = screen.warnings;
+    ended(outcome.err(), report_picture(options, &figures(options, &done)), &interrupt)
 }
 
 fn report_picture(BatchOptions { outputs, json, .. }: &BatchOptions, figures: &Value) -> anyhow::Result<()> {
@@ -132,12 +161,16 @@ fn resumed(options: &BatchOptions) -> Result<Option<SavedFilm>, Failure> {
 
 /// Whether the continued film has all samples and is all that would be written.
 fn is_complete(options: &BatchOptions, film: &Film) -> bool {
+    let is_kept = |output: &Output| output.is_checkpoint || !options.denoise;
     options.save_scene.is_none()
-        && options.outputs.iter().all(|output| options.resume.as_ref() == Some(&output.path))
+        && options
+            .outputs
+            .iter()
+            .all(|output| options.resume.as_ref() == Some(&output.path) && is_kept(output))
         && film.samples().first_gap(options.plan.range(), u64::MAX).is_none()
 }
 
-fn figures_of_complete(options: &BatchOptions, film: &Film) -> Value {
+fn figures_of_complete(options: &BatchOptions, film: Film) -> Value {
     let status = Status {
         phase: Phase::Done(EndReason::Samples),
         samples_per_pixel: film.sample_count(),
@@ -146,7 +179,8 @@ fn figures_of_complete(options: &BatchOptions, film: &Film) -> Value {
         ..Status::default()
     };
     let files = options.outputs.iter().map(|output| output.path.clone()).collect();
-    figures(options, Some(film), &status, &Written { files, ..Written::default() }, Duration::ZERO)
+    let written = Written { files, ..Written::default() };
+    figures(options, &Rendered { film: Some(film), status, written, writing: Duration::ZERO })
 }
 
 /// Version of the JSON. Incremented when a key is removed or changes meaning.
@@ -199,10 +233,7 @@ fn check_before(options: &BatchOptions) -> Result<(), Failure> {
         .chain(&options.json)
         .try_for_each(|path| check_writable(path))
         .map_err(Failure::input)?;
-    options
-        .job
-        .check_memory(1, if options.denoise { denoise::BYTES_PER_PIXEL } else { 0 })
-        .map_err(Failure::input)
+    options.check_memory()
 }
 
 /// Prints the scenes, stages and devices to choose from.

@@ -4,70 +4,113 @@ use super::BatchOptions;
 use super::files::{Files, Written};
 use super::keeping::Keeper;
 use super::studio::{Event, Studio};
-use super::summary::figures;
 use crate::film::Film;
 use crate::progressive::describe::seconds;
-use crate::progressive::{Phase, Plan, Status};
+use crate::progressive::{EndReason, Phase, Plan, Status};
 use crate::system::failure::Failure;
 use crate::system::files::ShownPath;
 use crate::system::interrupt::Interrupt;
 use crate::system::journal;
-use crate::system::terminal::{Display, ProgressChoice};
+use crate::system::terminal::Display;
 use anyhow::anyhow;
-use serde_json::Value;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+/// What a person sees of a run.
+pub(super) struct Screen {
+    pub display: Display,
+    /// What was said.
+    pub warnings: Vec<String>,
+    /// Whether warnings that differ only in numbers are the same, as those of frames are.
+    is_animation: bool,
+}
+
+impl Screen {
+    /// Progress in `steps`. Without a terminal, there is a line every five seconds.
+    pub fn new(options: &BatchOptions, steps: u64) -> Screen {
+        let bar = "{prefix} [{bar:24}] {wide_msg}";
+        let interval = Duration::from_secs(5);
+        let display = Display::new(options.progress, steps, bar, &options.recipe.name, interval);
+        let mut screen = Screen { display, warnings: Vec::new(), is_animation: steps != STEPS };
+        if options.recipe.scene.spheres.is_empty() && options.stage.is_none() {
+            screen.warn(
+                "the scene has no spheres, so the picture is the sky; a scene file lists them as [[spheres]], or names a \
+                 table above its first [table]: spheres = \"FILE.csv\"",
+            );
+        }
+        screen
+    }
+
+    /// Says a warning once.
+    pub fn warn(&mut self, warning: &str) {
+        let is_number = |c: char| self.is_animation && c.is_ascii_digit();
+        let is_known = |known: &String| known.replace(is_number, "") == warning.replace(is_number, "");
+        if !self.warnings.iter().any(is_known) {
+            self.display.warn(warning);
+            self.warnings.push(warning.to_owned());
+        }
+    }
+}
+
+/// A picture that was rendered and written.
+pub(super) struct Rendered {
+    pub status: Status,
+    pub film: Option<Film>,
+    pub written: Written,
+    pub writing: Duration,
+}
+
 /// Renders a picture, from the film to continue, and writes its files. On any failure, the samples rendered so far are
-/// kept. `warnings` are printed before it begins. Returns its figures, and whether all went well.
+/// kept; of a frame, nothing is. `show` gets the state now and then. Returns the picture, and whether all went well.
 pub(super) fn render(
     files: &Arc<Files>,
     film: Option<Film>,
-    warnings: &[String],
+    screen: &mut Screen,
     studio: &mut Studio,
     interrupt: &Interrupt,
-) -> (Value, Result<(), Failure>) {
+    mut show: impl FnMut(&mut Display, &Status),
+) -> (Rendered, Result<(), Failure>) {
     let options = &files.options;
     let mut keeper = options.checkpoint().map(|_| Keeper::new(files));
-    let mut display = display(options.progress, STEPS, &options.recipe.name);
-    let begin = Instant::now();
-    warnings.iter().for_each(|warning| display.warn(warning));
-    let (mut status, film) =
+    let (status, film) =
         studio.render(options.job.clone(), options.plan.clone(), film, |event| match event {
-            Event::Warning(warning) => display.warn(warning),
+            Event::Warning(warning) => screen.warn(warning),
             Event::Stopping => {
                 let hint = "; press Ctrl-C again to exit at once without writing";
                 let hint = if interrupt.is_by_hand() { hint } else { "" };
-                let cause = interrupt.cause();
-                display.say(&format!("{cause}: finishing the current samples and writing the files{hint}"));
+                let end = match options.frame {
+                    Some(frame) => format!("dropping frame {frame}; the others are complete"),
+                    None => "finishing the current samples and writing the files".to_owned(),
+                };
+                screen.display.say(&format!("{}: {end}{hint}", interrupt.cause()));
             }
             Event::Status(_, status) if status.phase.is_over() => {}
             Event::Status(progressive, status) => {
                 let warning = keeper.as_mut().and_then(|keeper| keeper.look(progressive, status));
-                warning.iter().for_each(|warning| display.warn(warning));
-                show(&mut display, &options.plan, status, begin.elapsed());
+                warning.iter().for_each(|warning| screen.display.warn(warning));
+                show(&mut screen.display, status);
             }
         });
     let names: Vec<String> = options.outputs.iter().map(|output| output.path.shown()).collect();
-    let writing = interrupt.while_writing(names.join(" and "));
+    let guard = interrupt.while_writing(names.join(" and "));
     let begin = Instant::now();
     let kept = keeper.and_then(Keeper::finish);
     let mut written = Written::default();
-    if let Some(film) = film.as_ref().filter(|film| film.sample_count() > 0) {
-        let say = |path: &Path| display.announce(STEPS, || format!("writing {}", path.shown()));
+    let is_whole = matches!(status.phase, Phase::Done(reason) if reason != EndReason::Stopped);
+    let is_written = |film: &&Film| film.sample_count() > 0 && (is_whole || options.frame.is_none());
+    if let Some(film) = film.as_ref().filter(is_written) {
+        let say = |path: &Path| screen.display.announce(STEPS, || format!("writing {}", path.shown()));
         written = files.write(film, &status, say);
     }
-    drop(writing);
+    drop(guard);
     written.files.iter().for_each(|path| log::info!("wrote {}", path.display()));
-    written.notes.iter().for_each(|note| display.warn(note));
-    status.messages = [warnings, &status.messages, &written.notes].concat();
-    display.clear();
+    written.notes.iter().for_each(|note| screen.warn(note));
     if matches!(status.phase, Phase::Failed(_)) {
         journal::write_report();
     }
     let outcome = outcome(options, &status, film.as_ref(), &written, kept);
-    (figures(options, film.as_ref(), &status, &written, begin.elapsed()), outcome)
+    (Rendered { status, film, written, writing: begin.elapsed() }, outcome)
 }
 
 /// The result of a render and of writing its files. `kept` is the number of samples per pixel in the checkpoint.
@@ -82,7 +125,7 @@ fn outcome(
     let Phase::Failed(reason) = &status.phase else {
         return if failures.is_empty() { Ok(()) } else { Err(Failure::Run(anyhow!(failures))) };
     };
-    let held = film.map_or(0, Film::sample_count);
+    let held = film.filter(|_| !written.files.is_empty()).map_or(0, Film::sample_count);
     Err(match (kept, options.checkpoint()) {
         _ if !failures.is_empty() => Failure::Run(anyhow!("{reason}; {failures}")),
         _ if held > 0 => {
@@ -99,15 +142,10 @@ fn outcome(
 }
 
 /// Steps of the bar of a picture.
-const STEPS: u64 = 1000;
-
-/// How the progress of `steps` is shown. Without a terminal, there is a line every five seconds.
-pub(super) fn display(choice: ProgressChoice, steps: u64, name: &str) -> Display {
-    Display::new(choice, steps, "{prefix} [{bar:24}] {wide_msg}", name, Duration::from_secs(5))
-}
+pub(super) const STEPS: u64 = 1000;
 
 /// Shows the state of a render that has taken `elapsed` so far.
-fn show(display: &mut Display, plan: &Plan, status: &Status, elapsed: Duration) {
+pub(super) fn show(display: &mut Display, plan: &Plan, status: &Status, elapsed: Duration) {
     let left = seconds_left(plan, status);
     let done = elapsed.as_secs_f64();
     // The first step until the end can be predicted.
@@ -195,8 +233,9 @@ mod tests {
         let interrupt = Interrupt::unheard();
         let mut studio =
             Studio::with_factory(Box::new(|_| Ok(Box::new(Failing))), &options.backend, &interrupt);
-        let files = Arc::new(Files::lock(options.clone()).unwrap());
-        let (_, outcome) = render(&files, None, &[], &mut studio, &interrupt);
+        let files = Arc::new(Files::lock(options.clone(), Duration::ZERO).unwrap());
+        let mut screen = Screen::new(&options, STEPS);
+        let (_, outcome) = render(&files, None, &mut screen, &mut studio, &interrupt, |_, _| {});
         let failure = outcome.unwrap_err();
         let message = failure.to_string();
         assert!(matches!(failure, Failure::BrokeOff(_)), "{message}");

@@ -1,15 +1,14 @@
 //! The final figures of a run: lines for people, and the same figures as JSON.
 
 use super::BatchOptions;
-use super::files::Written;
+use super::picture::Rendered;
 use crate::film::Film;
+use crate::progressive::Phase;
 use crate::progressive::describe::seconds;
-use crate::progressive::{Phase, Status};
 use crate::system::console::printable;
 use crate::system::memory;
 use serde_json::{Value, json};
 use std::fmt::Write;
-use std::time::Duration;
 
 /// A label, and pieces of the line after it. `{key}` in a piece stands for a figure; a piece that lacks one is left
 /// out, and so is a line without pieces.
@@ -86,14 +85,10 @@ pub(super) const PICTURE: [Line; 10] = [
 ];
 
 /// Time and quality of one picture. Times and counts are those of this run; samples per pixel, rejected samples and the
-/// estimates are those of the film, including its earlier samples. `writing` is the time spent writing the files.
-pub(super) fn figures(
-    options: &BatchOptions,
-    film: Option<&Film>,
-    status: &Status,
-    written: &Written,
-    writing: Duration,
-) -> Value {
+/// estimates are those of the film, including its earlier samples.
+pub(super) fn figures(options: &BatchOptions, picture: &Rendered) -> Value {
+    let Rendered { status, film, written, writing } = picture;
+    let film = film.as_ref();
     let (settings, backend, error) = (options.job.settings(), status.backend.as_ref(), status.error);
     let preparing = status.prepare.saturating_sub(status.hierarchy);
     let ended_by = match &status.phase {
@@ -122,7 +117,7 @@ pub(super) fn figures(
         "hierarchy_seconds": status.hierarchy.as_secs_f64(),
         "trace_seconds": status.trace.as_secs_f64(),
         "write_seconds": writing.as_secs_f64(),
-        "total_seconds": (status.elapsed + writing).as_secs_f64(),
+        "total_seconds": (status.elapsed + *writing).as_secs_f64(),
         "paths": status.stats.paths,
         "rays": status.stats.rays,
         "paths_per_second": status.paths_per_second(),

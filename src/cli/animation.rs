@@ -1,68 +1,68 @@
 //! Animations: `--frames` and `--turntable`.
 
 use super::check_paths;
-use super::render::{AnimationFlags, RenderFlags};
+use super::render::{self, AnimationFlags, RenderFlags};
 use super::sources;
 use crate::batch::{FrameNames, FramesOptions};
+use crate::job::output::OutputFormat;
 use crate::scene::animation::CameraPath;
-use crate::system::files::ShownPath;
-use anyhow::{Context, Result, bail};
-use std::path::{Path, PathBuf};
+use crate::system::files::{STANDARD, ShownPath};
+use anyhow::{Context, Result, bail, ensure};
+use std::path::PathBuf;
 
 /// Validates the flags of an animation.
-pub(super) fn frames(flags: RenderFlags, command: String) -> Result<FramesOptions> {
-    let (chosen, job) = sources::picture(&flags.picture, &flags.samples, None)?;
-    let (recipe, AnimationFlags { frames, turntable }) = (&chosen.recipe, flags.animation);
-    let path = match turntable {
-        Some(frames) => CameraPath::Turntable { start: recipe.camera, frames },
-        None if recipe.keyframes.is_empty() => {
-            bail!("--frames needs --turntable: the scene has no [[keyframes]], so the camera would not move")
-        }
-        None if flags.picture.camera != Default::default() => bail!(
-            "flags of the camera such as --look-from and --vfov cannot be used with the keyframes of the scene file: \
-             they set the camera; change them, or use --turntable"
-        ),
-        None => CameraPath::Keyframes(recipe.keyframes.clone()),
-    };
-    let frames = frames.unwrap_or(0..turntable.unwrap_or_default());
-    let [out] = flags.files.out.as_slice() else {
+pub(super) fn frames(mut flags: RenderFlags, command: String) -> Result<FramesOptions> {
+    let (files, AnimationFlags { frames, turntable }) = (&mut flags.files, flags.animation.clone());
+    let own = "each frame is a file of its own, and complete ones are kept when the command is repeated";
+    for (flag, is_given, reason) in [
+        ("--checkpoint", files.checkpoint.is_some(), own),
+        ("--resume", files.resume.is_some(), own),
+        ("--sample-range", flags.samples.sample_range.is_some(), "share an animation by --frames A..B"),
+        ("--save-scene", files.save_scene.is_some(), "write the scene without the flags of the animation"),
+    ] {
+        ensure!(!is_given, "{flag} cannot be used with --frames and --turntable: {reason}");
+    }
+    let [out] = files.out.as_mut_slice() else {
         bail!(
             "an animation needs --batch and one --out: it writes many pictures; name a directory, or a pattern such as \
              turn-####.png"
         );
     };
-    let names = names(out)?;
-    let files: Vec<PathBuf> = frames.clone().map(|frame| names.path(frame)).collect();
-    let outputs = files.iter().chain(&flags.files.json).map(PathBuf::as_path);
+    let names = names(out, files.format.unwrap_or(OutputFormat::Png))?;
+    let moves_camera = flags.picture.camera != Default::default();
     let scene = sources::inputs(flags.picture.scene.as_deref());
-    check_paths(scene.iter().map(PathBuf::as_path), outputs)?;
-    let options = FramesOptions {
-        recipe: chosen.recipe,
-        job,
-        stage: chosen.stage,
-        path,
-        frames,
-        names,
-        backend: flags.backend,
-        progress: flags.progress,
-        json: flags.files.json,
-        command: Some(command),
+    let picture = render::batch(flags, command)?;
+    let path = match turntable {
+        Some(frames) => CameraPath::Turntable { start: picture.recipe.camera, frames },
+        None if picture.recipe.keyframes.is_empty() => {
+            bail!("--frames needs --turntable: the scene has no [[keyframes]], so the camera would not move")
+        }
+        None if moves_camera => bail!(
+            "flags of the camera such as --look-from and --vfov cannot be used with the keyframes of the scene file: \
+             they set the camera; change them, or use --turntable"
+        ),
+        None => CameraPath::Keyframes(picture.recipe.keyframes.clone()),
     };
+    let frames = frames.unwrap_or(0..turntable.unwrap_or_default());
+    let files: Vec<PathBuf> = frames.clone().map(|frame| names.path(frame)).collect();
+    let outputs = files.iter().chain(&picture.json).map(PathBuf::as_path);
+    check_paths(scene.iter().map(PathBuf::as_path), outputs)?;
+    let options = FramesOptions { picture, path, frames, names };
     options.check()?;
     Ok(options)
 }
 
-/// The files of the frames: `frame-0000.png` and so on in a directory, or named after a pattern.
-fn names(out: &Path) -> Result<FrameNames> {
+/// The files of the frames: `frame-0000.png` and so on in a directory, or named after a pattern, which `out` becomes.
+fn names(out: &mut PathBuf, format: OutputFormat) -> Result<FrameNames> {
     let is_pattern = out.file_name().is_some_and(|name| name.to_string_lossy().contains('#'));
-    let is_directory = out.is_dir() || (out.extension().is_none() && !is_pattern);
-    let pattern = if is_directory { out.join("frame-####.png") } else { out.to_owned() };
-    let is_png = pattern.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
-    FrameNames::of_pattern(&pattern).filter(|_| is_png).with_context(|| {
+    let named = out.shown();
+    if out.is_dir() || (out.extension().is_none() && !is_pattern) {
+        out.push(format!("frame-####{}", format.ending()));
+    }
+    FrameNames::of_pattern(out).filter(|_| named != STANDARD && OutputFormat::from_path(out).is_ok()).with_context(|| {
         format!(
-            "--out is {}, but an animation is a directory of PNG files, or a pattern with a single row of # such as \
-             turn-####.png; other programs, such as ffmpeg, turn them into a video",
-            out.shown()
+            "--out is {named}, but an animation is a directory of pictures, or a pattern with a single row of # such as \
+             turn-####.png; other programs, such as ffmpeg, turn them into a video"
         )
     })
 }

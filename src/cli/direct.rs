@@ -26,14 +26,17 @@ pub(super) struct MergeFlags {
     /// or do not fit, and the commands that render what is missing
     #[arg(long, value_name = "COUNT", value_parser = whole::<u64>(1..=SAMPLE_LIMIT))]
     samples: Option<u64>,
+    /// Denoise the picture, with an estimate of its error; an .exr keeps its film and gains it as a layer
+    #[arg(long, requires = "out")]
+    denoise: bool,
 }
 
 impl MergeFlags {
-    pub fn options(self, program: String) -> Result<MergeOptions> {
-        let MergeFlags { films, out, samples } = self;
+    pub fn options(self, program: String, command: String) -> Result<MergeOptions> {
+        let MergeFlags { films, out, samples, denoise } = self;
         out.iter().try_for_each(|out| OutputFormat::from_path(out).map(drop))?;
         check_outputs(films.iter().map(PathBuf::as_path), out.iter().map(PathBuf::as_path))?;
-        Ok(MergeOptions { films, out, samples, program })
+        Ok(MergeOptions { films, out, samples, denoise, program, command })
     }
 }
 

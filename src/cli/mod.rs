@@ -141,7 +141,8 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
     }
     Ok(match Command::from_arg_matches(&matches).map_err(Failure::CommandLine)? {
         Command::Merge(flags) => {
-            Request::Merge(flags.options(called(arguments.first())).map_err(Failure::Input)?)
+            let options = flags.options(called(arguments.first()), recorded(&arguments));
+            Request::Merge(options.map_err(Failure::Input)?)
         }
         Command::Info(direct::InfoFlags { file, json }) => Request::Info(InfoOptions { file, json }),
         Command::Report(mut options) => {
@@ -209,8 +210,23 @@ fn matches(mut arguments: Vec<OsString>) -> Result<ArgMatches, clap::Error> {
     command().try_get_matches_from(arguments)
 }
 
-/// Adds a tip if the value of a flag has a decimal comma, and replaces a long list of values.
+/// Adds a tip if a flag is one of another command, or if its value has a decimal comma, and replaces a long list of values.
 fn hinted(mut error: clap::Error) -> clap::Error {
+    if let (Some(ContextValue::String(flag)), clap::error::ErrorKind::UnknownArgument) =
+        (error.get(ContextKind::InvalidArg).cloned(), error.kind())
+    {
+        let all = command();
+        let has =
+            |one: &clap::Command| one.get_arguments().any(|arg| arg.get_long() == flag.strip_prefix("--"));
+        let named = |one: &clap::Command| format!("weekender {}", one.get_name());
+        let own = has(&all).then(|| "weekender --batch".to_owned());
+        let places: Vec<String> =
+            own.into_iter().chain(all.get_subcommands().filter(|one| has(one)).map(named)).collect();
+        if !places.is_empty() {
+            let tip = format!("{flag} is a flag of {}", places.join(" and of "));
+            error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+        }
+    }
     let is_long = |values: &ContextValue| matches!(values, ContextValue::Strings(names) if names.len() > 9);
     if error.get(ContextKind::ValidValue).is_some_and(is_long) {
         error.remove(ContextKind::ValidValue);

@@ -4,6 +4,7 @@ use super::sources::{self, ChosenRecipe, PictureFlags, SampleFlags};
 use super::values::{file_ending, parse_duration, parse_noise_target, parse_seconds, range, whole};
 use crate::backends::BackendChoice;
 use crate::batch::{BatchOptions, Output};
+use crate::film::checkpoint;
 use crate::job::output::OutputFormat;
 use crate::job::recipe::{Recipe, plain_name};
 use crate::progressive::{NoiseOf, Plan, Stop};
@@ -11,7 +12,7 @@ use crate::scene::animation::FRAME_LIMIT;
 use crate::system::files::{STANDARD, ShownPath};
 use crate::system::terminal::ProgressChoice;
 use anyhow::{Result, bail, ensure};
-use clap::{ArgGroup, Args};
+use clap::Args;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -77,24 +78,24 @@ pub(super) struct WindowFlags {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "When to stop, besides --samples (the first one met)")]
 pub(super) struct StopFlags {
-    /// Seconds of rendering
-    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, conflicts_with = "AnimationFlags")]
+    /// Seconds of rendering, for each frame of an animation
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     pub time_limit: Option<f64>,
     /// Estimated error: root mean square over pixels and channels, linear radiance
-    #[arg(long, value_name = "RMSE", value_parser = parse_noise_target, conflicts_with = "AnimationFlags")]
+    #[arg(long, value_name = "RMSE", value_parser = parse_noise_target)]
     pub noise_target: Option<f64>,
 }
 
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Animation", group = ArgGroup::new("moving").multiple(true).conflicts_with("sample_range"))]
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Animation")]
 pub(super) struct AnimationFlags {
     /// Render frames A to B - 1 of an animation to --out; the camera moves by --turntable or by the keyframes of the scene
     /// file [default with --turntable: one turn]
-    #[arg(long, value_name = "A..B", value_parser = range(FRAME_LIMIT, "0..120"), group = "moving")]
+    #[arg(long, value_name = "A..B", value_parser = range(FRAME_LIMIT, "0..120"))]
     pub frames: Option<Range<u32>>,
     /// Move the camera around --look-at, about --vup, in this number of frames, 2 to 100000 [without a value: 120]
     #[arg(long, value_name = "FRAMES", value_parser = whole::<u32>(2..=FRAME_LIMIT.into()), num_args = 0..=1,
-          require_equals = true, default_missing_value = "120", group = "moving")]
+          require_equals = true, default_missing_value = "120")]
     pub turntable: Option<u32>,
 }
 
@@ -113,16 +114,16 @@ pub(super) struct FileFlags {
     #[arg(long, value_name = "FILE", requires = "batch")]
     pub out: Vec<PathBuf>,
     /// The format of --out, if its extension does not tell
-    #[arg(long, value_enum, requires = "out", conflicts_with = "AnimationFlags")]
-    format: Option<OutputFormat>,
+    #[arg(long, value_enum, requires = "out")]
+    pub format: Option<OutputFormat>,
     /// Write the denoised picture, with an estimate of its error; an .exr keeps its film and gains the denoised picture
-    /// as a layer; --noise-target then applies to the denoised picture
-    #[arg(long, requires = "batch", conflicts_with = "AnimationFlags")]
+    /// as a layer; --noise-target then applies to the denoised picture. With --resume and without --samples,
+    /// --time-limit and --noise-target, nothing is rendered
+    #[arg(long, requires = "batch")]
     denoise: bool,
     /// Keep the film so that it can be resumed or merged; it is written regularly and at the end, even after Ctrl-C. An
     /// existing file is never replaced, unless the render continues its film (--continue, --resume)
-    #[arg(long, value_name = "FILE.exr", value_parser = file_ending(".exr"), requires = "batch",
-          conflicts_with = "AnimationFlags")]
+    #[arg(long, value_name = "FILE.exr", value_parser = file_ending(".exr"), requires = "batch")]
     pub checkpoint: Option<PathBuf>,
     /// Continue the film of --checkpoint if it exists, so that one command starts a render and continues it; a damaged
     /// film is renamed to FILE.exr.damaged, and rendered again
@@ -133,10 +134,10 @@ pub(super) struct FileFlags {
     #[arg(long, value_name = "DURATION", value_parser = parse_duration, default_value = "60s", requires = "checkpoint")]
     every: Duration,
     /// Continue a film; without --scene and --stage, with its own scene
-    #[arg(long, value_name = "FILE.exr", value_parser = file_ending(".exr"), conflicts_with = "AnimationFlags")]
+    #[arg(long, value_name = "FILE.exr", value_parser = file_ending(".exr"))]
     pub resume: Option<PathBuf>,
     /// Write the scene, with the changes of the other flags, as a scene file
-    #[arg(long, value_name = "FILE.toml", conflicts_with = "AnimationFlags")]
+    #[arg(long, value_name = "FILE.toml")]
     pub save_scene: Option<PathBuf>,
     /// Write the final figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-", requires = "batch")]
@@ -174,6 +175,7 @@ pub(super) fn batch(flags: RenderFlags, command: String) -> Result<BatchOptions>
         progress: flags.progress,
         json: flags.files.json,
         command,
+        frame: None,
     })
 }
 
@@ -218,11 +220,21 @@ pub(super) fn plan(flags: &RenderFlags, recipe: &Recipe) -> Plan {
     let (first_sample, samples) = match (&flags.samples.sample_range, flags.samples.samples) {
         (Some(range), _) => (range.start, Some(range.end)),
         (None, None) if seconds.is_some() || noise.is_some() => (0, None),
+        (None, None) if flags.files.denoise && flags.files.resume.is_some() && !flags.files.go_on => {
+            held(flags)
+        }
         (None, _) => (0, Some(recipe.samples_per_pixel)),
     };
     let noise_of = if flags.files.denoise { NoiseOf::Denoised } else { NoiseOf::Film };
     let stop = Stop { samples, seconds, noise, noise_of };
     Plan { first_sample, pass_target: Plan::BATCH_PASS, ..Plan::until(stop) }
+}
+
+/// The first sample of the film that is resumed and the one after it, so that nothing is rendered.
+fn held(flags: &RenderFlags) -> (u64, Option<u64>) {
+    let head = flags.files.resume.as_ref().and_then(|film| checkpoint::read_head(film).ok());
+    let first = head.and_then(|head| Some(head.samples.iter().next()?.start)).unwrap_or(0);
+    (first, Some(first + 1))
 }
 
 #[cfg(test)]

@@ -54,7 +54,10 @@ impl Picture {
         };
         let described = |key| Some(saved.as_ref()?.kind.text(key)?.to_owned());
         let samples = described(key::SAMPLES).map_or_else(String::new, |count| format!(", {count} samples"));
-        let denoised = described(key::DENOISED).or_else(|| (layer == Some(DENOISED_LAYER)).then(String::new));
+        let is_denoised = layer == Some(DENOISED_LAYER)
+            || saved.as_ref().is_some_and(|saved| matches!(saved.kind, Kind::Picture(_)));
+        let denoised = described(key::DENOISED).filter(|_| is_denoised);
+        let denoised = denoised.or_else(|| (layer == Some(DENOISED_LAYER)).then(String::new));
         // A film's layers are pictures.
         if let Some(saved @ Saved { kind: Kind::Film(head), .. }) = saved.as_ref().filter(|_| layer.is_none())
         {

@@ -21,6 +21,8 @@ pub mod key {
     /// Seconds of tracing.
     pub const SECONDS: &str = "Seconds";
     pub const FRAME: &str = "Frame";
+    /// When a frame was to end and what was to be made of it: see `--samples` and its neighbours.
+    pub const UNTIL: &str = "Until";
     pub const COMMAND: &str = "Command";
     pub const BACKEND: &str = "Backend";
     /// The estimated error.

@@ -4,6 +4,7 @@ use super::{Description, Film, SampleRanges, checkpoint};
 use crate::system::files::{FileLock, LockedError, ShownPath, WriteError};
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// A film file, locked until this is dropped.
 #[derive(Debug)]
@@ -18,9 +19,9 @@ impl LockedFilm {
     /// Locks the file, which need not exist. Its present content may be replaced, see [`LockedFilm::holds`].
     ///
     /// # Errors
-    /// [`LockedError`] if another run has locked it.
-    pub fn new(path: &Path) -> Result<LockedFilm, LockedError> {
-        let lock = FileLock::take(path)?;
+    /// [`LockedError`] if another run has locked it for as long as `patience`.
+    pub fn new(path: &Path, patience: Duration) -> Result<LockedFilm, LockedError> {
+        let lock = FileLock::take_within(path, patience)?;
         Ok(LockedFilm { path: path.to_owned(), held: SampleRanges::default(), _lock: lock })
     }
 
@@ -75,7 +76,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("g.exr");
         checkpoint::save(&path, &film(&[0..4]), &Description::new("r")).unwrap();
-        let mut run = LockedFilm::new(&path).unwrap();
+        let mut run = LockedFilm::new(&path, Duration::ZERO).unwrap();
         run.holds(film(&[0..4]).samples());
         let mut save = |samples: &[Range<u64>]| run.save(&film(samples), None, &Description::new("r"));
         let held = || checkpoint::load(&path).unwrap().film.samples().to_string();

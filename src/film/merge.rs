@@ -28,7 +28,7 @@ impl FilmSum {
         let FilmFile { film, description } = checkpoint::load(path)?;
         Ok(FilmSum {
             parts: vec![(path.to_owned(), film.samples().clone())],
-            backends: description.get(key::BACKEND).map(str::to_owned).into_iter().collect(),
+            backends: backends(&description),
             seconds: seconds(&description),
             film,
             description,
@@ -57,8 +57,11 @@ impl FilmSum {
         }
         self.film.merge(&film).with_context(|| format!("{first} and {other} cannot be merged"))?;
         self.parts.push((path.to_owned(), film.samples().clone()));
-        let backend = description.get(key::BACKEND).map(str::to_owned);
-        self.backends.extend(backend.filter(|backend| !self.backends.contains(backend)));
+        for backend in backends(&description) {
+            if !self.backends.contains(&backend) {
+                self.backends.push(backend);
+            }
+        }
         self.seconds = self.seconds.zip(seconds(&description)).map(|(sum, seconds)| sum + seconds);
         Ok(())
     }
@@ -77,6 +80,8 @@ impl FilmSum {
     pub fn description(&self) -> Description {
         let mut description = self.description.clone();
         description.set(key::SAMPLES, self.film.sample_count());
+        // That of the first film is not that of the sum.
+        description.remove(key::DENOISED);
         if !self.backends.is_empty() {
             description.set(key::BACKEND, self.backends.join("; "));
         }
@@ -86,6 +91,18 @@ impl FilmSum {
         }
         description
     }
+}
+
+/// The backends, each once and without its number of samples.
+fn backends(description: &Description) -> Vec<String> {
+    let text = description.get(key::BACKEND).unwrap_or_default();
+    let name = |one: &str| match one.rsplit_once(" (") {
+        Some((name, count)) if count.ends_with("sample)") || count.ends_with("samples)") => name.to_owned(),
+        _ => one.to_owned(),
+    };
+    let mut names: Vec<String> = text.split("; ").filter(|one| !one.is_empty()).map(name).collect();
+    names.dedup();
+    names
 }
 
 fn seconds(description: &Description) -> Option<f64> {

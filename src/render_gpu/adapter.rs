@@ -133,7 +133,8 @@ fn names_software(name: &str) -> bool {
 /// set (`vulkan,gl`; `noop` finds none). GL is enumerated only if no other backend has a usable adapter that is `wanted`:
 /// it would list the same hardware again, and its libraries print warnings of their own.
 pub fn all_adapters(wanted: impl Fn(&AdapterInfo) -> bool) -> Vec<(AdapterInfo, wgpu::Adapter)> {
-    let allowed = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::all());
+    let allowed =
+        super::options::variable().and_then(|_| wgpu::Backends::from_env()).unwrap_or(wgpu::Backends::all());
     let mut adapters = adapters_of(wgpu::Backends::PRIMARY & allowed);
     let is_found = adapters.iter().any(|(info, _)| info.lacks.is_none() && wanted(info));
     if !is_found && allowed.contains(wgpu::Backends::GL) {

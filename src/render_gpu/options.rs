@@ -62,10 +62,15 @@ impl GpuOptions {
     }
 }
 
+/// The graphics interfaces that `WGPU_BACKEND` names, if it names any.
+pub(super) fn variable() -> Option<String> {
+    std::env::var("WGPU_BACKEND").ok().filter(|names| !names.is_empty())
+}
+
 /// Restriction of the search for adapters by the environment.
 fn restriction() -> String {
     let restriction = |backends| format!(" (WGPU_BACKEND allows only \"{backends}\")");
-    std::env::var("WGPU_BACKEND").map_or(String::new(), restriction)
+    variable().map_or(String::new(), restriction)
 }
 
 /// Why no GPU is available for rendering.

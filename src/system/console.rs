@@ -59,6 +59,23 @@ fn harmless(text: &str) -> String {
     escaped(text, |c| c.is_control() && !matches!(c, '\n' | '\t')).into_owned()
 }
 
+/// Longest line of a message about what the user gave, characters.
+const LINE: usize = 390;
+
+/// A message about what the user gave, which may be as long as a file: the middle of a long line is left out.
+pub fn brief(text: &str) -> String {
+    let cut = |line: &str| {
+        let line: Vec<char> = harmless(line).chars().collect();
+        match line.len() {
+            0..=LINE => line.iter().collect(),
+            length => {
+                [&line[..LINE / 2], &[' ', '…', ' '], &line[length - LINE / 2..]].concat().iter().collect()
+            }
+        }
+    };
+    text.lines().map(cut).collect::<Vec<String>>().join("\n")
+}
+
 fn escaped(text: &str, is_escaped: impl Fn(char) -> bool) -> Cow<'_, str> {
     if !text.contains(&is_escaped) {
         return Cow::Borrowed(text);
@@ -70,6 +87,15 @@ fn escaped(text: &str, is_escaped: impl Fn(char) -> bool) -> Cow<'_, str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn long_lines_lose_their_middle() {
+        let message = format!("error: \u{1b}{} is too long\nname another", "x".repeat(300_000));
+        let found = brief(&message);
+        assert!(found.len() < 420 && found.contains("…") && found.contains("\\u{1b}x"), "{found}");
+        assert!(found.ends_with("is too long\nname another"), "{found}");
+        assert_eq!(brief("short\n"), "short");
+    }
 
     #[test]
     fn nothing_controls_a_terminal() {

@@ -53,7 +53,8 @@ impl Failure {
             Failure::Run(_) => FAILED,
             Failure::BrokeOff(_) => BROKE_OFF,
         };
-        console::note(&self.to_string());
+        let text = self.to_string();
+        console::note(&if code == BAD_INPUT { console::brief(&text) } else { text });
         ExitCode::from(code)
     }
 }

@@ -16,7 +16,7 @@ use crate::app::model::{
 use crate::app::toolkit::Finder;
 use crate::app::toolkit::widgets::focus;
 use crate::app::viewport::sight::Sight;
-use crate::batch::{FrameNames, FramesOptions};
+use crate::batch::{BatchOptions, FrameNames, FramesOptions, Output, Studio};
 use crate::job::output::OutputFormat;
 use crate::job::recipe::Recipe;
 use crate::job::recipe::file::sphere_to_toml;
@@ -27,6 +27,7 @@ use eframe::egui::{self, Context, ViewportCommand};
 use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::Arc;
+use std::time::Duration;
 
 impl Window {
     /// Carries out a command. A disabled command shows why it is disabled.
@@ -686,18 +687,27 @@ impl Window {
                 let mut document = self.document().clone();
                 document.give_size(size);
                 let (frames, job) = (frames.max(document.keyframes.len() as u32), document.job(1));
-                let options = FramesOptions {
+                let pattern = path.join("frame-####.png");
+                let names = FrameNames::of_pattern(&pattern).ok_or("it has no name")?;
+                let output = Output { path: pattern, format: OutputFormat::Png, is_checkpoint: false };
+                let picture = BatchOptions {
                     recipe: Recipe { samples_per_pixel: samples.into(), ..document.recipe() },
                     job: job.map_err(|error| error.to_string())?,
                     stage: document.stage().filter(|_| !document.has_changed_scene()),
-                    path: document.path(frames),
-                    frames: 0..frames,
-                    names: FrameNames::of_pattern(&path.join("frame-####.png")).ok_or("it has no name")?,
+                    plan: Studio::plan(samples.into()),
+                    denoise: false,
+                    outputs: vec![output],
+                    every: Duration::MAX,
+                    resume: None,
+                    save_scene: None,
                     backend,
                     progress: ProgressChoice::Off,
                     json: None,
-                    command: None,
+                    command: String::new(),
+                    frame: None,
                 };
+                let options =
+                    FramesOptions { picture, path: document.path(frames), frames: 0..frames, names };
                 options.check().map_err(|error| format!("{error:#}"))?;
                 self.files.save_frames(context, options)?;
             }

@@ -18,12 +18,20 @@ const SETTLED: Duration = Duration::from_secs(3);
 /// Share of the rows that a growing picture needs before it is judged.
 const ROWS_LEAST: f64 = 0.4;
 
-/// A file's length and modification time, which change with its content.
-type Stamp = Option<(u64, Option<SystemTime>)>;
+/// A file's length and modification time, and what changes even if a copy keeps both: the file itself and the time of
+/// its last change of any kind. (notify's poll watcher compares only modification times.)
+type Stamp = Option<(u64, Option<SystemTime>, [u64; 3])>;
 
 fn stamp(path: &Path) -> Stamp {
     let found = std::fs::metadata(path).ok()?;
-    Some((found.len(), found.modified().ok()))
+    #[cfg(unix)]
+    let own = {
+        use std::os::unix::fs::MetadataExt;
+        [found.ino(), found.ctime() as u64, found.ctime_nsec() as u64]
+    };
+    #[cfg(not(unix))]
+    let own = [0; 3];
+    Some((found.len(), found.modified().ok(), own))
 }
 
 /// A picture that is judged whenever its file changes.
@@ -55,7 +63,7 @@ impl Watched {
         let has_changed = now != self.seen.0;
         if has_changed {
             let is_rewritten =
-                now.is_none_or(|(length, _)| self.seen.0.is_some_and(|(before, _)| length < before));
+                now.is_none_or(|(length, ..)| self.seen.0.is_some_and(|(before, ..)| length < before));
             if is_rewritten || self.is_told {
                 self.rows = 0;
             }
@@ -64,7 +72,7 @@ impl Watched {
         if self.is_told {
             return None;
         }
-        let age = now.and_then(|(_, modified)| modified?.elapsed().ok()).unwrap_or_default();
+        let age = now.and_then(|(_, modified, _)| modified?.elapsed().ok()).unwrap_or_default();
         let is_settled = age.max(self.seen.1.elapsed()) >= SETTLED;
         if has_changed && !is_settled {
             // It may be torn right now, unless it only grows.

@@ -74,25 +74,26 @@ impl OutputFormat {
 /// # Errors
 /// If the file cannot be written; an existing one is then unchanged.
 pub fn write_image(path: &Path, film: &Film, transfer: Transfer, description: &Description) -> Result<()> {
-    write_image_as(path, OutputFormat::from_path(path)?, film, transfer, description)
+    write_image_as(path, OutputFormat::from_path(path)?, (film, None), transfer, description)
 }
 
-/// As [`write_image`], in this format.
+/// As [`write_image`], in this format. An EXR file of a `denoised` film keeps the film, and has it as a layer.
 ///
 /// # Errors
 /// As for [`write_image`].
 pub fn write_image_as(
     path: &Path,
     format: OutputFormat,
-    film: &Film,
+    (film, denoised): (&Film, Option<&Film>),
     transfer: Transfer,
     description: &Description,
 ) -> Result<()> {
+    let picture = denoised.unwrap_or(film);
     replace_file(path, |writer| match format {
-        OutputFormat::Png => png::write(film, transfer, description, false, writer),
-        OutputFormat::P6 => ppm::write(film, transfer, writer),
-        OutputFormat::Exr => checkpoint::write(film, None, description, writer),
-        OutputFormat::Pfm => netpbm::write_pfm(film, writer),
+        OutputFormat::Png => png::write(picture, transfer, description, false, writer),
+        OutputFormat::P6 => ppm::write(picture, transfer, writer),
+        OutputFormat::Exr => checkpoint::write(film, denoised, description, writer),
+        OutputFormat::Pfm => netpbm::write_pfm(picture, writer),
     })?;
     Ok(())
 }

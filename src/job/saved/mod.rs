@@ -168,12 +168,12 @@ pub fn resume(path: &Path, job: &RenderJob) -> Result<SavedFilm, OpenError> {
     saved.film()
 }
 
-/// Whether the file is the whole frame that `recipe` describes, made by `software`, the program and its version.
-pub fn is_whole_frame(path: &Path, recipe: &Recipe, software: &str) -> bool {
-    let samples = recipe.samples_per_pixel.to_string();
+/// Whether the file is the whole frame that `recipe` describes, made by `software`, the program and its version, and
+/// with this entry.
+pub fn is_whole_frame(path: &Path, recipe: &Recipe, software: &str, (key, value): (&str, &str)) -> bool {
     read_description(path).is_ok_and(|found| {
         found.recipe() == file::to_picture_toml(recipe)
-            && found.get(key::SAMPLES) == Some(&samples)
+            && found.get(key) == Some(value)
             && found.get(key::SOFTWARE) == Some(software)
     }) && read_picture(path, None).is_ok()
 }

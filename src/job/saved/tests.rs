@@ -103,7 +103,7 @@ fn frame_is_whole_only_if_all_inputs_match() {
     let path = directory.path().join("frame.png");
     let mut recipe = Recipe::builtin("three-spheres").unwrap();
     (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (4, 3, 2);
-    assert!(!is_whole_frame(&path, &recipe, "Weekender 1"));
+    assert!(!is_whole_frame(&path, &recipe, "Weekender 1", (key::SAMPLES, "2")));
 
     let mut film = recipe.job().unwrap().new_film();
     film.record(0..2, 0).unwrap();
@@ -113,19 +113,19 @@ fn frame_is_whole_only_if_all_inputs_match() {
     let write =
         |description: &Description| write_image(&path, &film, recipe.rules.transfer, description).unwrap();
     write(&description);
-    assert!(is_whole_frame(&path, &recipe, "Weekender 1"));
-    assert!(!is_whole_frame(&path, &recipe, "Weekender 2"));
+    assert!(is_whole_frame(&path, &recipe, "Weekender 1", (key::SAMPLES, "2")));
+    assert!(!is_whole_frame(&path, &recipe, "Weekender 2", (key::SAMPLES, "2")));
     let mut other = recipe.clone();
     other.settings.seed = 5;
-    assert!(!is_whole_frame(&path, &other, "Weekender 1"));
+    assert!(!is_whole_frame(&path, &other, "Weekender 1", (key::SAMPLES, "2")));
     description.set(key::SAMPLES, 1);
     write(&description);
-    assert!(!is_whole_frame(&path, &recipe, "Weekender 1"));
+    assert!(!is_whole_frame(&path, &recipe, "Weekender 1", (key::SAMPLES, "2")));
     description.set(key::SAMPLES, 2);
     write(&description);
     let whole = std::fs::read(&path).unwrap();
     for damaged in [&whole[..whole.len() - 30], b"no picture"] {
         std::fs::write(&path, damaged).unwrap();
-        assert!(!is_whole_frame(&path, &recipe, "Weekender 1"));
+        assert!(!is_whole_frame(&path, &recipe, "Weekender 1", (key::SAMPLES, "2")));
     }
 }

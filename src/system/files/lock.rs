@@ -23,9 +23,6 @@ pub(super) fn hidden(path: &Path, ending: &str) -> io::Result<PathBuf> {
     Ok(path.with_file_name(format!(".weekender-{name}{ending}")))
 }
 
-/// How long a run waits for another that is about to end.
-const PATIENCE: Duration = Duration::from_secs(1);
-
 /// Another run is writing the file.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 #[error(
@@ -45,16 +42,23 @@ pub struct FileLock(
 );
 
 impl FileLock {
+    /// How long a run waits for another that is about to end.
+    pub const PATIENCE: Duration = Duration::from_secs(1);
+
     /// Locks `path` until the result is dropped. Devices and standard output need no lock; where the system has no locks, runs are not kept
     /// apart.
     ///
     /// # Errors
     /// [`LockedError`] if another run has locked it.
     pub fn take(path: &Path) -> Result<FileLock, LockedError> {
-        FileLock::take_within(path, PATIENCE)
+        FileLock::take_within(path, FileLock::PATIENCE)
     }
 
-    fn take_within(path: &Path, patience: Duration) -> Result<FileLock, LockedError> {
+    /// As [`FileLock::take`], waiting for as long as `patience`.
+    ///
+    /// # Errors
+    /// Those of [`FileLock::take`].
+    pub fn take_within(path: &Path, patience: Duration) -> Result<FileLock, LockedError> {
         if identity(path).is_none() {
             return Ok(FileLock(None));
         }

@@ -107,6 +107,36 @@ fn bad_settings_are_refused() {
     }
 }
 
+/// A key that another table has is sent there.
+#[test]
+fn right_keys_in_wrong_places_are_told_where_they_belong() {
+    let scene = "[camera]\nlook_from = [0.0, 0.0, 3.0]\nlook_at = [0.0, 0.0, 0.0]\nvfov_degrees = 40.0\n";
+    let material = "[materials.ground]\nkind = \"lambertian\"\nalbedo = [0.5, 0.5, 0.5]\n";
+    for (text, key, place) in [
+        (format!("{scene}{material}spheres = \"spheres.csv\"\n"), "spheres", "above the first [table]"),
+        (format!("{scene}scene = \"book\"\n"), "scene", "above the first [table]"),
+        (format!("{scene}frame = 3\n"), "frame", "in [[keyframes]]"),
+        (format!("{scene}[frame]\nlook_from = [0.0, 0.0, 3.0]\n"), "frame", "in [[keyframes]]"),
+        (format!("{scene}width = 400\n"), "width", "in [render]"),
+        (format!("vfov_degrees = 20.0\n{scene}"), "vfov_degrees", "in [camera]"),
+        (format!("{scene}[render]\nbottom = [1.0, 1.0, 1.0]\n"), "bottom", "in [sky]"),
+        (format!("{scene}radius = 3.0\n"), "radius", "in [[spheres]]"),
+        (format!("{scene}[sky]\nfuzz = 0.1\n"), "fuzz", "in a material"),
+        (format!("{scene}[camera.sky]\ntop = [1.0, 1.0, 1.0]\n"), "sky", "a table of its own, [sky]"),
+    ] {
+        let message = parse(&text, "a.toml").expect_err("refused").to_string();
+        let words = format!("the key `{key}` does not belong here; write it {place}");
+        let is_told = message.contains(&words) || message.contains(&words.replace(" in a table", " a table"));
+        assert!(is_told || message.contains(place), "{message}");
+        assert!(message.len() < 200, "{message}");
+    }
+    let message =
+        parse(&format!("{scene}[spheres]\nfile = \"s.csv\"\n"), "a").expect_err("refused").to_string();
+    assert!(message.contains("write [[spheres]]") && message.contains("FILE.csv"), "{message}");
+    let message = parse(&format!("{scene}colour = 3\n"), "a").expect_err("refused").to_string();
+    assert!(message.contains("unknown key `colour`, expected"), "{message}");
+}
+
 #[test]
 fn files_that_cannot_be_read_are_refused() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -120,7 +150,7 @@ fn files_that_cannot_be_read_are_refused() {
 
     let wide: Vec<u8> = ONE_SPHERE.encode_utf16().flat_map(u16::to_le_bytes).collect();
     for (bytes, part) in
-        [([b"\xff\xfe".to_vec(), wide.clone()].concat(), "it is not UTF-8 text"), (wide, "binary.toml")]
+        [([b"\xff\xfe".to_vec(), wide.clone()].concat(), "it is UTF-16 text"), (wide, "binary.toml")]
     {
         std::fs::write(at("binary.toml"), bytes).expect("written");
         assert!(message(&at("binary.toml")).contains(part), "{part}: {}", message(&at("binary.toml")));

@@ -38,6 +38,12 @@ fn a_table_is_the_same_scene_as_a_list() {
         read("'''\nx,y,z,radius,material\n0,-1000.5,0,1e3,ball\n-1,0.25,2,0.5,\"ice blue\"'''", ""),
         listed
     );
+    let quoted = TABLE.replace("-1,0.25", "\"-1\", \"0.25\"");
+    let (mac, spaced) = (TABLE.replace('\n', "\r"), TABLE.replace(",", " , ").replace('\n', "\n  \n"));
+    assert_eq!(
+        [read("\"t.csv\"", &quoted), read("\"t.csv\"", &mac), read("\"t.csv\"", &spaced)],
+        [(); 3].map(|()| listed.clone())
+    );
     let reordered = "material, radius, z, y, x\nball, 1000, 0, -1000.5, 0\n\n\"ice blue\",.5,2,.25,-1";
     for table in [TABLE, &TABLE.replace('\n', "\r\n"), &format!("\u{feff}{TABLE}"), reordered] {
         assert_eq!(read("\"t.csv\"", table), listed, "{table:?}");
@@ -86,7 +92,11 @@ fn a_wrong_table_is_refused_with_its_line() {
         ("0.25", "zero", 3, &["spheres[1].y is \"zero\"", "a number such as"]),
         ("1e3,ball", "1e3", 2, &["has 4"]),
         ("ball", "bell", 2, &["spheres[0].material is \"bell\"", "add [materials.bell]"]),
-        ("radius", "size", 1, &["x,y,z,size,material", "x,y,z,radius"]),
+        ("radius", "size", 1, &["x,y,z,size,material", "unknown column \"size\"", "x,y,z,radius"]),
+        ("x,y,z,radius,material", "x;y;z;radius;material", 1, &["separated by semicolons"]),
+        ("x,y,z,radius,material", "x\ty\tz\tradius\tmaterial", 1, &["separated by tabs"]),
+        ("x,y,z,radius,material", ",x,y,z,radius,material", 1, &["no name", "index"]),
+        ("0.25", "\"0,25\"", 3, &["spheres[1].y is \"0,25\"", "a number such as"]),
         ("material", "x", 1, &["x,y,z,radius,x", "each once"]),
         ("x,y,z,radius,material\n", "", 1, &["0,-1000.5,0,1e3,ball", "must name its columns"]),
     ] {
@@ -109,6 +119,16 @@ fn a_wrong_table_is_refused_with_its_line() {
     assert!(message.contains("t.csv:2: ") && message.contains("[255.0, 0.0, 0.0]"), "{message}");
     fs::write(&path, b"x,y,z\xff").expect("written");
     assert!(load(&scene).expect_err("refused").to_string().contains("t.csv: it is not UTF-8"));
+    for (bytes, kind) in [
+        (&b"\x1f\x8b\x08\x00"[..], "gzip"),
+        (b"\xff\xfex\0,\0", "UTF-16"),
+        (b"\x89PNG\r\n\x1a\n", "a PNG"),
+        (b"PK\x03\x04\xff", "workbook"),
+    ] {
+        fs::write(&path, bytes).expect("written");
+        let message = load(&scene).expect_err("refused").to_string();
+        assert!(message.contains(kind) && !message.contains("permissions"), "{message}");
+    }
     fs::remove_file(&path).expect("removed");
     assert!(load(&scene).expect_err("refused").to_string().contains("cannot read"));
     // A recipe in a picture cannot make the program read a file.

@@ -65,6 +65,56 @@ fn only_incomplete_frames_are_rendered_again() {
     assert_eq!(run(&["--samples", "5", "--seed", "1"]), [0, 8]);
 }
 
+#[test]
+fn frames_are_pictures_like_all_others() {
+    use weekender::film::{checkpoint, key};
+    let directory = temp();
+    let run = |more: &[&str]| {
+        let json = render(directory.path(), &[&["--turntable=3"], more].concat());
+        [&json["rendered"], &json["kept"]].map(|count| count.as_u64().unwrap())
+    };
+    let at = |name: &str| directory.path().join(name);
+    let denoised = ["--out", "d-#.exr", "--samples", "64", "--denoise"];
+    assert_eq!([run(&denoised), run(&denoised)], [[3, 0], [0, 3]]);
+    let read = checkpoint::load(&at("d-1.exr")).unwrap();
+    assert_eq!(read.film.sample_count(), 64);
+    assert!(read.description.get(key::DENOISED).is_some());
+    assert_eq!(run(&denoised[..4]), [3, 0], "they were denoised");
+    let noise = ["--out", "n-#.png", "--samples", "256", "--noise-target", "0.08"];
+    assert_eq!([run(&noise), run(&noise)], [[3, 0], [0, 3]]);
+    assert_eq!(run(&[&noise[..5], &["0.09"]].concat()), [3, 0], "another target");
+    assert_eq!(run(&["--out", "t-#.png", "--samples", "8", "--time-limit", "60"]), [3, 0]);
+    // A PFM does not say how it was made.
+    assert_eq!(
+        [run(&["--out", "pfm", "--format", "pfm"]), run(&["--out", "pfm", "--format", "pfm"])],
+        [[3, 0]; 2]
+    );
+    assert_eq!(names(&at("pfm")), ["frame-0000.pfm", "frame-0001.pfm", "frame-0002.pfm"]);
+}
+
+/// Two runs in one directory, one of which ends early.
+#[cfg(unix)]
+#[test]
+fn runs_in_one_directory_share_the_frames() {
+    let directory = temp();
+    let flags = ["--batch", "--size", "160x90", "--samples", "64", "--turntable=24", "--out", "d", "--json"];
+    let start = |json: &str| {
+        let mut command = weekender(directory.path(), &[&flags[..], &[json]].concat());
+        command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+    };
+    let (mut first, mut second) = (start("first.json"), start("second.json"));
+    assert!(first.wait().unwrap().success() && second.wait().unwrap().success());
+    let figures = ["first.json", "second.json"]
+        .map(|name| crate::common::program::json_file(&directory.path().join(name)));
+    let sum = |key: &str| figures.iter().map(|figures| figures[key].as_u64().unwrap()).sum::<u64>();
+    assert_eq!((sum("rendered"), sum("kept"), sum("frames_done")), (24, 24, 48));
+    // What a killed run has claimed is rendered by the next.
+    fs::remove_file(directory.path().join("d/frame-0003.png")).unwrap();
+    fs::write(directory.path().join("d/.weekender-frame-0003.png.lock"), "").unwrap();
+    assert!(start("third.json").wait().unwrap().success());
+    assert_eq!(names(&directory.path().join("d")).len(), 24);
+}
+
 #[cfg(unix)]
 #[test]
 fn interrupted_run_keeps_whole_frames_and_continues() {
@@ -75,7 +125,8 @@ fn interrupted_run_keeps_whole_frames_and_continues() {
         let mut command = weekender(directory.path(), &arguments);
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         let frames = directory.path().join("frames");
-        let count = || if frames.is_dir() { names(&frames).len() } else { 0 };
+        let is_frame = |name: &String| name.starts_with("frame-");
+        let count = || if frames.is_dir() { names(&frames).into_iter().filter(is_frame).count() } else { 0 };
         until("no frames are written", || count() >= 3);
         crate::common::program::signal(&child, signal);
         assert_eq!(child.wait().unwrap().code(), Some(code));

@@ -25,6 +25,51 @@ fn keyframed(keyframes: Vec<Keyframe>) -> CameraPath {
     CameraPath::Keyframes(keyframes)
 }
 
+/// Over or under `look_at`, the picture turns by 180 degrees; the frames are named once, with the remedy.
+#[test]
+fn a_path_over_its_target_is_warned_about() {
+    use super::common::{ends, temp};
+    let scene = |middle: &str, more: &str| {
+        let ends = |frame: u32, z: f64| {
+            format!("[[keyframes]]\nframe = {frame}\nlook_from = [0.0, 0.5, {z:?}]\n{more}\n")
+        };
+        format!(
+            "scene = \"three-spheres\"\n[camera]\nlook_from = [0.0, 1.0, 3.0]\nlook_at = [0.0, 0.0, -1.0]\nvfov_degrees = 60.0\n{}\
+             [[keyframes]]\nframe = 20\nlook_from = {middle}\n{more}\n{}",
+            ends(0, 4.0),
+            ends(40, -6.0)
+        )
+    };
+    for (middle, more, is_warned) in [
+        ("[0.01, 5.0, -1.01]", "", true),
+        ("[0.01, -5.0, -1.01]", "", true),
+        ("[0.01, 5.0, -1.01]", "vup = [1.0, 0.0, 0.0]", false),
+        ("[5.0, 0.5, -1.0]", "", false),
+    ] {
+        let directory = temp();
+        std::fs::write(directory.path().join("s.toml"), scene(middle, more)).unwrap();
+        let flags = [
+            "--batch",
+            "--scene",
+            "s.toml",
+            "--size",
+            "8x8",
+            "--samples",
+            "1",
+            "--frames",
+            "18..23",
+            "--out",
+            "d",
+        ];
+        let (_, message) = ends(directory.path(), 0, &flags);
+        assert_eq!(
+            message.matches("turns over between the frames 19 and 21").count(),
+            usize::from(is_warned),
+            "{message}"
+        );
+    }
+}
+
 #[test]
 fn a_turntable_closes_to_the_bit() {
     for length in [7, 120] {

@@ -215,6 +215,33 @@ fn a_watched_picture_is_judged_after_each_change() {
     };
     assert_eq!(last["is_right"], true, "{last}");
     writer.join().unwrap();
+    // Other pictures of the same length and time: rewritten, renamed over it, and behind a link.
+    let at = |name: &str| directory.path().join(name);
+    let time = std::time::SystemTime::UNIX_EPOCH + Duration::from_secs(1_000_000_000);
+    let set_time =
+        |name: &str| File::options().write(true).open(at(name)).unwrap().set_modified(time).unwrap();
+    let bytes = |half: bool| {
+        let pixels = std::iter::repeat_n(if half { b"\x40\x60\x80" } else { b"\x80\x60\x40" }, 160 * 90);
+        [b"P6\n160 90\n255\n".to_vec(), pixels.flatten().copied().collect()].concat()
+    };
+    let mut is_half = false;
+    for way in ["in place", "renamed", "linked"] {
+        is_half = !is_half;
+        let name = if way == "in place" { "mine.ppm" } else { way };
+        std::fs::write(at(name), bytes(is_half)).unwrap();
+        set_time(name);
+        match way {
+            "renamed" => std::fs::rename(at(name), at("mine.ppm")).unwrap(),
+            #[cfg(unix)]
+            "linked" => {
+                std::os::unix::fs::symlink(way, at("link")).unwrap();
+                std::fs::rename(at("link"), at("mine.ppm")).unwrap();
+            }
+            _ => {}
+        }
+        let line = found();
+        assert_eq!(line["is_right"], false, "{way}: {line}");
+    }
     child.kill().unwrap();
     child.wait().unwrap();
 }

@@ -35,6 +35,39 @@ fn seconds_add_up_over_runs() {
     assert!(of_run > 0.0 && (both - 1000.0 - of_run).abs() < 1e-6, "{both} of 1000 and {of_run}");
 }
 
+/// What a film has is denoised; nothing is rendered unless more is asked for.
+#[test]
+fn denoising_a_film_renders_nothing() {
+    use weekender::film::{checkpoint, key};
+    let directory = temp();
+    let at = |name: &str| directory.path().join(name);
+    render(directory.path(), &["--sample-range", "64..96", "--out", "a.exr"]);
+    render(directory.path(), &["--sample-range", "128..160", "--out", "b.exr"]);
+    succeeds(directory.path(), &["merge", "a.exr", "b.exr", "--denoise", "--out", "m.exr", "--out", "m.png"]);
+    let merged = checkpoint::load(&at("m.exr")).unwrap();
+    assert!(merged.description.get(key::DENOISED).is_some() && at("m.png").exists());
+    // Its command is the merge, not that of its first part.
+    assert!(merged.description.get(key::COMMAND).unwrap().contains("merge a.exr b.exr"));
+    for (film, more, added) in [("m.exr", &[][..], 0), ("a.exr", &[], 0), ("a.exr", &["--samples", "96"], 64)]
+    {
+        let flags = ["--resume", film, "--denoise", "--out", "d.exr", "--json", "d.json"];
+        render(directory.path(), &[&flags[..], more].concat());
+        let figures = json_file(&at("d.json"));
+        assert_eq!(figures["added_samples_per_pixel"], added, "{film} {more:?}");
+        assert!(figures["denoised"].is_string());
+        assert!(succeeds(directory.path(), &["info", "d.exr"]).contains("denoised"));
+    }
+    // A film that becomes its own denoised one keeps its samples.
+    render(directory.path(), &["--resume", "a.exr", "--denoise", "--out", "a.exr"]);
+    assert_eq!(film(&at("a.exr")).samples().to_string(), "64..96");
+    // Sums of sums name each backend once.
+    render(directory.path(), &["--sample-range", "0..4", "--out", "c.exr"]);
+    render(directory.path(), &["--resume", "c.exr", "--sample-range", "4..8", "--out", "c.exr"]);
+    succeeds(directory.path(), &["merge", "m.exr", "c.exr", "--out", "o.exr"]);
+    let backend = checkpoint::load(&at("o.exr")).unwrap().description.get(key::BACKEND).unwrap().to_owned();
+    assert_eq!(backend.matches("cpu").count(), 1, "{backend}");
+}
+
 #[test]
 fn films_of_other_pictures_are_not_resumed() {
     let directory = temp();

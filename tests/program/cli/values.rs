@@ -34,6 +34,82 @@ fn bad_values_are_refused_with_value_and_limit() {
     }
 }
 
+/// What the user gave may be as long as a file, a message may not.
+#[test]
+fn messages_are_short_however_long_the_input() {
+    let directory = temp();
+    let long = "y".repeat(100_000);
+    let write = |name: &str, text: &str| std::fs::write(directory.path().join(name), text).unwrap();
+    let camera = "[camera]\nlook_from = [0.0, 0.0, 3.0]\nlook_at = [0.0, 0.0, 0.0]\nvfov_degrees = 40.0\n";
+    let table = |row: &str| format!("spheres = '''\nx,y,z,radius,red,green,blue\n{row}\n'''\n{camera}");
+    write("cell.toml", &table(&format!("0,0,{long},1,0,0,0")));
+    write("header.toml", &table("").replace("x,y,z", &format!("x,{long}\u{1b},z")));
+    write("key.toml", &format!("{camera}{long} = 3\n"));
+    write("kind.toml", &format!("{camera}[materials.a]\nkind = \"{long}\"\n"));
+    write("scene.toml", &format!("scene = \"{long}\"\n{camera}"));
+    for scene in ["cell.toml", "header.toml", "key.toml", "kind.toml", "scene.toml"] {
+        let (code, out, message) = outcome(
+            &weekender(directory.path(), &["--batch", "--scene", scene, "--out", "a.png"]).output().unwrap(),
+        );
+        assert_eq!((code, out.as_str()), (Some(2), ""), "{message:.400}");
+        assert!(message.len() < 450 && message.contains('…') && message.contains(scene), "{message:.600}");
+    }
+    for flags in
+        [["--stage", &long], ["--scene", &long], ["--size", &long], ["--isa", &long], ["--out", &long]]
+    {
+        let (code, _, message) =
+            outcome(&weekender(directory.path(), &[&["--batch"], &flags[..]].concat()).output().unwrap());
+        assert_eq!(code, Some(2), "{message:.400}");
+        assert!(message.len() < 700, "{}: {message:.600}", message.len());
+    }
+}
+
+#[test]
+fn a_flag_of_another_command_is_sent_there() {
+    for (arguments, place) in [
+        (&["info", "a.exr", "--out", "b.png"][..], "weekender merge"),
+        (&["compare", "a.exr", "b.exr", "--denoise"], "weekender --batch"),
+        (&["check", "a.png", "--samples", "3"], "weekender --batch"),
+        (&["merge", "a.exr", "--watch", "--out", "b.exr"], "weekender check"),
+    ] {
+        refused(arguments, &["is a flag of", place]);
+    }
+}
+
+/// A script that died leaves a table of a header only.
+#[test]
+fn a_scene_without_spheres_is_warned_about() {
+    let directory = temp();
+    let camera = "[camera]\nlook_from = [0.0, 0.0, 3.0]\nlook_at = [0.0, 0.0, 0.0]\nvfov_degrees = 40.0\n";
+    std::fs::write(directory.path().join("t.csv"), "x,y,z,radius,material\n").unwrap();
+    for spheres in ["spheres = \"t.csv\"\n", "spheres = []\n", ""] {
+        std::fs::write(directory.path().join("s.toml"), format!("{spheres}{camera}")).unwrap();
+        for more in [&["--out", "a.png"][..], &["--turntable=2", "--out", "d"]] {
+            let flags = ["--batch", "--scene", "s.toml", "--size", "8x8", "--samples", "1"];
+            let output = weekender(directory.path(), &[&flags[..], more].concat()).output().unwrap();
+            let (code, _, message) = outcome(&output);
+            assert_eq!((code, message.matches("no spheres").count()), (Some(0), 1), "{message}");
+            assert!(message.contains("[[spheres]]") && message.contains("FILE.csv"), "{message}");
+        }
+    }
+    let stage = ["--batch", "--stage", "sky", "--size", "8x8", "--samples", "1", "--out", "b.png"];
+    let (_, _, message) = outcome(&weekender(directory.path(), &stage).output().unwrap());
+    assert!(!message.contains("no spheres"), "{message}");
+}
+
+/// An empty environment variable counts as not set.
+#[test]
+fn an_empty_choice_of_backends_is_none() {
+    let directory = temp();
+    let list = |value: Option<&str>| {
+        let mut command = weekender(directory.path(), &["--list"]);
+        value.map(|value| command.env("WGPU_BACKEND", value));
+        outcome(&command.output().unwrap())
+    };
+    assert_eq!(list(Some("")), list(None));
+    assert!(!list(Some("")).1.contains("WGPU_BACKEND"));
+}
+
 #[test]
 fn outside_text_cannot_control_a_terminal() {
     let directory = temp();

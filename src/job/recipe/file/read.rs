@@ -7,12 +7,12 @@ use crate::job::render::{DEPTH_LIMIT, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, 
 use crate::scene::animation::{FRAME_LIMIT, Keyframe};
 use crate::scene::{Camera, Material, Scene, Sky, missing_material};
 use crate::stages::Rules;
-use crate::system::files::{self, InputError, ShownPath};
+use crate::system::files::{self, ShownPath};
 use crate::system::memory;
 use anyhow::anyhow;
 use glam::DVec3;
 use serde::de::value::SeqAccessDeserializer;
-use serde::de::{SeqAccess, Visitor};
+use serde::de::{Error as _, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
@@ -44,12 +44,25 @@ fn error_at(text: &str, name: &str, byte: usize, reason: &str) -> anyhow::Error 
 pub fn load(path: &Path) -> anyhow::Result<Recipe> {
     let label = path.shown();
     let bytes = files::read(path, "a scene file", FILE_LIMIT)?;
-    let text = String::from_utf8(bytes).map_err(|_| {
-        InputError::unreadable(path, "it is not UTF-8 text; save it as UTF-8, or name a .toml file")
-    })?;
+    let text = text_of(path, bytes)?;
     let stem = path.file_stem().map_or_else(|| label.clone(), |stem| stem.to_string_lossy().into_owned());
     let directory = path.parent().unwrap_or(Path::new(""));
     Ok(Recipe { name: stem, ..parse_in(Some(directory), &text, &label)? })
+}
+
+/// The text of a file.
+///
+/// # Errors
+/// What the file is instead, by its first bytes, and what to do.
+pub(super) fn text_of(path: &Path, bytes: Vec<u8>) -> anyhow::Result<String> {
+    let found = match bytes.as_slice() {
+        [0x1f, 0x8b, ..] => "is packed by gzip; unpack it",
+        [b'P', b'K', 3, 4, ..] => "is a ZIP archive or a workbook of a spreadsheet; save it as CSV",
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "is UTF-16 text; save it as UTF-8",
+        [0x89, b'P', b'N', b'G', ..] => "is a PNG picture; name a text file",
+        _ => "is not UTF-8 text; save it as UTF-8",
+    };
+    String::from_utf8(bytes).map_err(|_| anyhow!("cannot read {}: it {found}", path.shown()))
 }
 
 /// Reads the text of a scene file. `name` becomes the name of the recipe, and messages start with it.
@@ -106,7 +119,37 @@ fn toml_message(mut error: toml::de::Error) -> String {
         ("\n", " "),
     ]
     .iter()
-    .fold(error.to_string().trim_end().to_owned(), |text, (from, to)| text.replace(from, to))
+    .fold(in_its_place(&error).unwrap_or(error.to_string().trim_end().to_owned()), |text, (from, to)| {
+        text.replace(from, to)
+    })
+}
+
+/// Where an unknown key belongs, if another table has it. The structs below list the keys: serde names them for a key
+/// that is in none.
+fn in_its_place(error: &toml::de::Error) -> Option<String> {
+    fn has<'a, T: Deserialize<'a>>(key: &str, start: &'a str) -> bool {
+        let unknown = toml::from_str::<T>(start).err();
+        unknown.is_some_and(|error| {
+            error.message().rsplit("expected").next().is_some_and(|keys| keys.contains(key))
+        })
+    }
+    let key = error.message().strip_prefix("unknown field ")?.split(',').next()?;
+    let name = key.trim_matches('`');
+    let materials = ["kind='lambertian'\n''=0", "kind='metal'\n''=0", "kind='dielectric'\n''=0"];
+    let place = match name {
+        "scene" | "scene_mark" | "spheres" => "above the first [table]".to_owned(),
+        "frame" => "in [[keyframes]]".to_owned(),
+        _ if has::<RawFile>(key, "''=0") => format!("in a table of its own, [{name}]"),
+        _ if has::<RawCamera>(key, "''=0") => "in [camera]".to_owned(),
+        _ if has::<RawSettings>(key, "''=0") => "in [render]".to_owned(),
+        _ if has::<RawSky>(key, "''=0") => "in [sky]".to_owned(),
+        _ if has::<RawSphere>(key, "''=0") => "in [[spheres]]".to_owned(),
+        _ if name == "kind" || materials.iter().any(|start| has::<Material>(key, start)) => {
+            "in a material".to_owned()
+        }
+        _ => return None,
+    };
+    Some(format!("the key {key} does not belong here; write it {place}"))
 }
 
 #[derive(Deserialize)]
@@ -185,6 +228,13 @@ impl<'de: 'a, 'a> Deserialize<'de> for RawSpheres<'a> {
 
             fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Self::Value, A::Error> {
                 Vec::deserialize(SeqAccessDeserializer::new(list)).map(RawSpheres::Listed)
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, _: A) -> Result<Self::Value, A::Error> {
+                Err(A::Error::custom(
+                    "[spheres] is one table; write [[spheres]] for each sphere, or spheres = \"FILE.csv\" above the \
+                     first [table]",
+                ))
             }
 
             fn visit_borrowed_str<E>(self, text: &'de str) -> Result<Self::Value, E> {
@@ -272,6 +322,12 @@ fn recipe_of<'a>(
             Arc::new(scene)
         }
     };
+    if raw.camera.get_ref().frame.is_some() {
+        return Err(refuse(
+            raw.camera.span(),
+            "the key `frame` does not belong here; write it in [[keyframes]]",
+        ));
+    }
     let camera = camera_of(&raw.camera, None)?;
     let (default, own) = (RenderSettings::default(), raw.render);
     if let Some(value) = own.estimate_error.filter(|value| !value.get_ref()) {
