@@ -46,7 +46,7 @@ pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
         return Err(Failure::Input(anyhow!("{} is named twice; name it once", film.shown())));
     }
     let is_film = |out: &&PathBuf| matches!(OutputFormat::from_path(out), Ok(OutputFormat::Exr));
-    let locks = options.out.iter().filter(is_film).map(|out| FileLock::take(out));
+    let locks = options.out.iter().filter(is_film).map(|out| FileLock::take(out, FileLock::PATIENCE));
     let _locks = locks.collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
     let (sum, left_out) = add_up(options).map_err(Failure::Input)?;
     let missing = options.samples.map_or_else(Vec::new, |samples| missing(&sum, &left_out, samples));

@@ -21,8 +21,7 @@ use crate::job::output::OutputFormat;
 use crate::job::recipe::{Recipe, file};
 use crate::job::render::RenderJob;
 use crate::job::saved::{self, OpenError, SavedFilm};
-use crate::progressive::describe::counted;
-use crate::progressive::{EndReason, Phase, Plan, Status, Stop};
+use crate::progressive::{EndReason, Phase, Plan, Status};
 use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
 use crate::system::console;
@@ -83,16 +82,9 @@ impl BatchOptions {
         self.outputs.iter().find(|output| output.is_checkpoint).map(|output| output.path.as_path())
     }
 
-    /// When the render ends and what is made of it, in words.
+    /// When the render ends and what is made of it.
     fn until(&self) -> String {
-        let Stop { samples, seconds, noise, .. } = self.plan.stop;
-        let parts = [
-            samples.map(|samples| counted(samples, "sample")),
-            seconds.map(|seconds| format!("{seconds} s")),
-            noise.map(|noise| format!("error {noise}")),
-            self.denoise.then(|| "denoised".to_owned()),
-        ];
-        parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+        format!("{:?}, denoised: {}", self.plan.stop, self.denoise)
     }
 
     /// Checks whether the peak fits into memory.

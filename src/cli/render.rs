@@ -4,7 +4,6 @@ use super::sources::{self, ChosenRecipe, PictureFlags, SampleFlags};
 use super::values::{file_ending, parse_duration, parse_noise_target, parse_seconds, range, whole};
 use crate::backends::BackendChoice;
 use crate::batch::{BatchOptions, Output};
-use crate::film::checkpoint;
 use crate::job::output::OutputFormat;
 use crate::job::recipe::{Recipe, plain_name};
 use crate::progressive::{NoiseOf, Plan, Stop};
@@ -221,20 +220,13 @@ pub(super) fn plan(flags: &RenderFlags, recipe: &Recipe) -> Plan {
         (Some(range), _) => (range.start, Some(range.end)),
         (None, None) if seconds.is_some() || noise.is_some() => (0, None),
         (None, None) if flags.files.denoise && flags.files.resume.is_some() && !flags.files.go_on => {
-            held(flags)
+            (0, Some(0))
         }
         (None, _) => (0, Some(recipe.samples_per_pixel)),
     };
     let noise_of = if flags.files.denoise { NoiseOf::Denoised } else { NoiseOf::Film };
     let stop = Stop { samples, seconds, noise, noise_of };
     Plan { first_sample, pass_target: Plan::BATCH_PASS, ..Plan::until(stop) }
-}
-
-/// The first sample of the film that is resumed and the one after it, so that nothing is rendered.
-fn held(flags: &RenderFlags) -> (u64, Option<u64>) {
-    let head = flags.files.resume.as_ref().and_then(|film| checkpoint::read_head(film).ok());
-    let first = head.and_then(|head| Some(head.samples.iter().next()?.start)).unwrap_or(0);
-    (first, Some(first + 1))
 }
 
 #[cfg(test)]

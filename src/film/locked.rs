@@ -21,7 +21,7 @@ impl LockedFilm {
     /// # Errors
     /// [`LockedError`] if another run has locked it for as long as `patience`.
     pub fn new(path: &Path, patience: Duration) -> Result<LockedFilm, LockedError> {
-        let lock = FileLock::take_within(path, patience)?;
+        let lock = FileLock::take(path, patience)?;
         Ok(LockedFilm { path: path.to_owned(), held: SampleRanges::default(), _lock: lock })
     }
 

@@ -64,13 +64,11 @@ const LINE: usize = 390;
 
 /// A message about what the user gave, which may be as long as a file: the middle of a long line is left out.
 pub fn brief(text: &str) -> String {
-    let cut = |line: &str| {
-        let line: Vec<char> = harmless(line).chars().collect();
-        match line.len() {
-            0..=LINE => line.iter().collect(),
-            length => {
-                [&line[..LINE / 2], &[' ', '…', ' '], &line[length - LINE / 2..]].concat().iter().collect()
-            }
+    let cut = |line: &str| match harmless(line) {
+        line if line.chars().count() <= LINE => line,
+        line => {
+            let ends = [0, line.chars().count() - LINE / 2];
+            ends.map(|skip| line.chars().skip(skip).take(LINE / 2).collect::<String>()).join(" … ")
         }
     };
     text.lines().map(cut).collect::<Vec<String>>().join("\n")

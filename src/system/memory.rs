@@ -54,18 +54,13 @@ pub fn check(what: impl FnOnce() -> String, bytes: u64, remedy: &'static str) ->
     if bytes < SMALL_BYTES {
         return Ok(());
     }
-    room().map_or(Ok(()), |room| check_against(what, bytes, room, remedy))
+    room().map_or(Ok(()), |room| check_against(what(), bytes, room, remedy))
 }
 
-fn check_against(
-    what: impl FnOnce() -> String,
-    bytes: u64,
-    room: Room,
-    remedy: &'static str,
-) -> Result<(), MemoryError> {
+fn check_against(what: String, bytes: u64, room: Room, remedy: &'static str) -> Result<(), MemoryError> {
     let needed_bytes = bytes.saturating_add(BASE_BYTES);
     if needed_bytes > room.bytes {
-        return Err(MemoryError { what: what(), needed_bytes, room, remedy });
+        return Err(MemoryError { what, needed_bytes, room, remedy });
     }
     Ok(())
 }
@@ -93,15 +88,11 @@ pub fn zeroed<T: bytemuck::Zeroable>(
 /// The smallest of what the machine, the process's control groups and its own limits allow. `None` if the system does
 /// not report it.
 pub fn room() -> Option<Room> {
-    let of_linux = fs::read_to_string("/proc/meminfo").ok().and_then(|text| in_bytes(&text, "MemAvailable:"));
+    let groups = fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
     let [address_space, data] = left_by_limits();
     let rooms = [
-        (MACHINE, of_linux),
-        (MACHINE, of_other_systems()),
-        (
-            GROUP,
-            free_of_groups(&fs::read_to_string("/proc/self/cgroup").unwrap_or_default(), "/sys/fs/cgroup"),
-        ),
+        (MACHINE, free_of_machine()),
+        (GROUP, free_of_groups(&groups, "/sys/fs/cgroup")),
         (ADDRESS_SPACE, address_space),
         (DATA, data),
     ];
@@ -126,7 +117,7 @@ fn left_by_limits() -> [Option<u64>; 2] {
 }
 
 #[cfg(any(windows, target_vendor = "apple"))]
-fn of_other_systems() -> Option<u64> {
+fn free_of_machine() -> Option<u64> {
     let mut system = sysinfo::System::new().ok()?;
     system.refresh_memory();
     Some(system.available_memory()).filter(|bytes| *bytes > 0)
@@ -134,13 +125,13 @@ fn of_other_systems() -> Option<u64> {
 
 /// In a browser, a program has 4 GiB and never gives memory back.
 #[cfg(target_family = "wasm")]
-fn of_other_systems() -> Option<u64> {
+fn free_of_machine() -> Option<u64> {
     Some((1 << 32) - 65_536 * core::arch::wasm32::memory_size::<0>() as u64)
 }
 
 #[cfg(not(any(windows, target_vendor = "apple", target_family = "wasm")))]
-fn of_other_systems() -> Option<u64> {
-    None
+fn free_of_machine() -> Option<u64> {
+    in_bytes(&fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
 }
 
 /// The value of a line such as `MemAvailable:  2048 kB` of a file in `/proc`, in bytes.
@@ -193,13 +184,13 @@ mod tests {
     #[test]
     fn refusals_have_numbers_and_a_remedy() {
         let of = |limit| move |bytes| Room { bytes, limit };
-        let check = |bytes, free| check_against(|| "a film".to_owned(), bytes, of(MACHINE)(free), "do less");
+        let check = |bytes, free| check_against("a film".to_owned(), bytes, of(MACHINE)(free), "do less");
         let message = check(14_000_000_000, 8_000_000_000).unwrap_err().to_string();
         let parts = ["a film", "14.07 GB", "8.00 GB", "do less"];
         assert!(parts.iter().all(|part| message.contains(part)), "{message}");
         assert!(check(u64::MAX, u64::MAX - 1).is_err());
         for (limit, name) in [(ADDRESS_SPACE, "ulimit -v"), (GROUP, "control group")] {
-            let refused = check_against(|| "a film".to_owned(), 9, of(limit)(5_000_000), "do less");
+            let refused = check_against("a film".to_owned(), 9, of(limit)(5_000_000), "do less");
             let message = refused.unwrap_err().to_string();
             assert!(message.contains(name) && message.contains("5.00 MB"), "{message}");
         }

@@ -8,10 +8,6 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Endings of [`hidden`] files: of a lock, and of an output that is being written.
-const LOCK: &str = ".lock";
-pub(super) const PART: &str = ".part";
-
 /// The hidden file with this ending beside `path`. Its name follows from that of `path`, so the next run that writes
 /// `path` takes over what a killed one left.
 pub(super) fn hidden(path: &Path, ending: &str) -> io::Result<PathBuf> {
@@ -45,25 +41,17 @@ impl FileLock {
     /// How long a run waits for another that is about to end.
     pub const PATIENCE: Duration = Duration::from_secs(1);
 
-    /// Locks `path` until the result is dropped. Devices and standard output need no lock; where the system has no locks, runs are not kept
-    /// apart.
+    /// Locks `path` until the result is dropped, waiting for as long as `patience`. Devices and standard output need no
+    /// lock; where the system has no locks, runs are not kept apart.
     ///
     /// # Errors
     /// [`LockedError`] if another run has locked it.
-    pub fn take(path: &Path) -> Result<FileLock, LockedError> {
-        FileLock::take_within(path, FileLock::PATIENCE)
-    }
-
-    /// As [`FileLock::take`], waiting for as long as `patience`.
-    ///
-    /// # Errors
-    /// Those of [`FileLock::take`].
-    pub fn take_within(path: &Path, patience: Duration) -> Result<FileLock, LockedError> {
+    pub fn take(path: &Path, patience: Duration) -> Result<FileLock, LockedError> {
         if identity(path).is_none() {
             return Ok(FileLock(None));
         }
         let lock = || -> io::Result<(File, PathBuf)> {
-            let path = hidden(path, LOCK)?;
+            let path = hidden(path, ".lock")?;
             Ok((lock_path(&path, patience)?, path))
         };
         match lock() {
@@ -126,9 +114,8 @@ mod tests {
     fn lock_released_in_time_is_acquired() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("x.exr");
-        let first = FileLock::take(&path).unwrap();
-        let waiting =
-            std::thread::spawn(move || FileLock::take_within(&path, Duration::from_secs(60)).is_ok());
+        let first = FileLock::take(&path, Duration::ZERO).unwrap();
+        let waiting = std::thread::spawn(move || FileLock::take(&path, Duration::from_secs(60)).is_ok());
         drop(first);
         assert!(waiting.join().unwrap());
     }
@@ -137,7 +124,7 @@ mod tests {
     fn lock_covers_all_names_and_survives_replacement() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name);
-        let take = |name: &str| FileLock::take_within(&at(name), Duration::ZERO);
+        let take = |name: &str| FileLock::take(&at(name), Duration::ZERO);
         let lock = take("g.exr").unwrap();
         let message = take("./g.exr").unwrap_err().to_string();
         assert!(message.contains("g.exr is locked") && message.contains("name another file"), "{message}");
@@ -148,7 +135,7 @@ mod tests {
         {
             std::os::unix::fs::symlink("g.exr", at("link.exr")).unwrap();
             assert!(take("link.exr").is_err());
-            let null = || FileLock::take(Path::new("/dev/null"));
+            let null = || FileLock::take(Path::new("/dev/null"), Duration::ZERO);
             assert!(null().is_ok() && null().is_ok());
         }
         drop(lock);
@@ -168,7 +155,7 @@ mod tests {
             for _ in 0..4 {
                 scope.spawn(|| {
                     for _ in 0..50 {
-                        let lock = FileLock::take_within(&path, Duration::from_secs(60)).unwrap();
+                        let lock = FileLock::take(&path, Duration::from_secs(60)).unwrap();
                         assert_eq!(inside.fetch_add(1, turns), 0);
                         inside.fetch_sub(1, turns);
                         drop(lock);

@@ -1,6 +1,6 @@
 //! Output files written whole or not at all: first beside their destination, then renamed.
 
-use super::lock::{PART, hidden, lock_path};
+use super::lock::{FileLock, hidden, lock_path};
 use super::paths::{STANDARD, ShownPath, resolved, unnamed};
 use super::sync::sync_directory;
 use std::fs::{self, File, Metadata, OpenOptions, Permissions};
@@ -8,9 +8,6 @@ use std::io::{self, BufWriter, ErrorKind, Seek, Write};
 use std::path::{Component, Path, PathBuf, Prefix};
 use std::time::{Duration, Instant};
 use tempfile::{NamedTempFile, TempPath};
-
-/// How long to wait for another program to close the file to be replaced. Some programs briefly open each new file.
-const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Pause between attempts.
 const PAUSE: Duration = Duration::from_millis(5);
@@ -182,9 +179,9 @@ pub(super) fn patiently<T>(patience: Duration, mut attempt: impl FnMut() -> io::
     }
 }
 
-/// Waits for another program to close the file that is to be replaced.
-fn once_closed(attempt: impl FnMut() -> io::Result<()>) -> io::Result<()> {
-    patiently(PATIENCE, attempt).map_err(|error| match is_busy(&error) {
+/// Waits for another program to close the file that is to be replaced. Some programs briefly open each new file.
+fn once_closed<T>(attempt: impl FnMut() -> io::Result<T>) -> io::Result<T> {
+    patiently(FileLock::PATIENCE, attempt).map_err(|error| match is_busy(&error) {
         true => io::Error::new(ErrorKind::ResourceBusy, "another program has it open"),
         false => error,
     })
@@ -215,17 +212,15 @@ pub(super) fn is_pipe(_: &Metadata) -> bool {
 
 /// An empty file beside `path`, locked so that no other run writes it, too. Dropping it deletes the file.
 fn new_file_for(path: &Path, old: Option<Permissions>) -> io::Result<NamedTempFile> {
-    let part = hidden(path, PART)?;
+    let part = hidden(path, ".part")?;
     if fs::symlink_metadata(&part).is_ok_and(|found| !found.is_file()) {
         return Err(io::Error::new(ErrorKind::AlreadyExists, format!("{} is in the way", part.shown())));
     }
-    let file = match lock_path(&part, PATIENCE) {
-        Err(error) if error.kind() == ErrorKind::WouldBlock => {
-            return Err(io::Error::new(ErrorKind::ResourceBusy, "another program is writing it"));
-        }
+    let file = once_closed(|| lock_path(&part, Duration::ZERO)).or_else(|error| match error.kind() {
+        ErrorKind::ResourceBusy => Err(error),
         // Where the file system has no locks, runs are not kept apart.
-        locked => locked.or_else(|_| File::create(&part))?,
-    };
+        _ => File::create(&part),
+    })?;
     file.set_len(0)?;
     let file = NamedTempFile::from_parts(file, TempPath::try_from_path(part)?);
     if let Some(old) = old.filter(|_| HAVE_PERMISSIONS) {
@@ -325,7 +320,7 @@ mod tests_of_parts {
         assert!(!part.exists());
         let used = new_file_for(&path, None).unwrap();
         let message = write_text(&path, "second").unwrap_err().to_string();
-        assert!(message.contains("another program is writing it"), "{message}");
+        assert!(message.contains("another program has it open"), "{message}");
         drop(used);
         let long = directory.path().join(format!("{}.png", "ö".repeat(120)));
         write_text(&long, "long").unwrap();

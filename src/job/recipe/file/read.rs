@@ -127,27 +127,26 @@ fn toml_message(mut error: toml::de::Error) -> String {
 /// Where an unknown key belongs, if another table has it. The structs below list the keys: serde names them for a key
 /// that is in none.
 fn in_its_place(error: &toml::de::Error) -> Option<String> {
-    fn has<'a, T: Deserialize<'a>>(key: &str, start: &'a str) -> bool {
-        let unknown = toml::from_str::<T>(start).err();
-        unknown.is_some_and(|error| {
-            error.message().rsplit("expected").next().is_some_and(|keys| keys.contains(key))
-        })
+    fn keys<'a, T: Deserialize<'a>>(text: &'a str) -> String {
+        let unknown = toml::from_str::<T>(text).err().map(|error| error.message().to_owned());
+        unknown.unwrap_or_default().rsplit("expected").next().unwrap_or_default().to_owned()
     }
     let key = error.message().strip_prefix("unknown field ")?.split(',').next()?;
-    let name = key.trim_matches('`');
-    let materials = ["kind='lambertian'\n''=0", "kind='metal'\n''=0", "kind='dielectric'\n''=0"];
-    let place = match name {
-        "scene" | "scene_mark" | "spheres" => "above the first [table]".to_owned(),
-        "frame" => "in [[keyframes]]".to_owned(),
-        _ if has::<RawFile>(key, "''=0") => format!("in a table of its own, [{name}]"),
-        _ if has::<RawCamera>(key, "''=0") => "in [camera]".to_owned(),
-        _ if has::<RawSettings>(key, "''=0") => "in [render]".to_owned(),
-        _ if has::<RawSky>(key, "''=0") => "in [sky]".to_owned(),
-        _ if has::<RawSphere>(key, "''=0") => "in [[spheres]]".to_owned(),
-        _ if name == "kind" || materials.iter().any(|start| has::<Material>(key, start)) => {
-            "in a material".to_owned()
-        }
-        _ => return None,
+    let place = match key {
+        "`scene`" | "`scene_mark`" | "`spheres`" => "above the first [table]",
+        "`frame`" => "in [[keyframes]]",
+        "`kind`" => "in a material",
+        _ => [
+            (keys::<RawFile>("''=0"), "in square brackets, as a table of its own"),
+            (keys::<RawCamera>("''=0"), "in [camera]"),
+            (keys::<RawSettings>("''=0"), "in [render]"),
+            (keys::<RawSky>("''=0"), "in [sky]"),
+            (keys::<RawSphere>("''=0"), "in [[spheres]]"),
+            (keys::<Material>("kind='metal'\n''=0"), "in a material"),
+            (keys::<Material>("kind='dielectric'\n''=0"), "in a material"),
+        ]
+        .iter()
+        .find_map(|(keys, place)| keys.contains(key).then_some(*place))?,
     };
     Some(format!("the key {key} does not belong here; write it {place}"))
 }

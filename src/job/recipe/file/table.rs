@@ -6,7 +6,6 @@ use crate::scene::{Material, Scene, Sphere, missing_material};
 use crate::system::files::{self, ShownPath};
 use crate::system::memory;
 use anyhow::{Context, Result, anyhow};
-use csv_core::ReadRecordResult;
 use glam::DVec3;
 use serde::Deserialize;
 use std::borrow::Cow;
@@ -54,38 +53,26 @@ impl<'a> Table<'a> {
 
     /// Adds its spheres to a scene that has the materials `index_of`.
     pub fn add_to(&self, scene: &mut Scene, index_of: &mut HashMap<String, usize>) -> Result<()> {
-        let text = self.text.trim_start_matches('\u{feff}');
-        let at = |byte: usize, reason: String| {
-            // Blank lines before a row belong to it.
-            let start = text.len() - text[byte..].trim_start().len();
-            let line = 1 + text[..start].matches('\n').count();
-            anyhow!("{}:{}: {reason}", self.file, self.lines_before + line)
-        };
-        let rows = text.bytes().filter(|byte| *byte == b'\n').count();
+        let at =
+            |line: usize, reason: String| anyhow!("{}:{}: {reason}", self.file, self.lines_before + line);
+        let rows = self.text.bytes().filter(|byte| *byte == b'\n').count();
         let remedy = "use a table of fewer spheres, or close other programs";
         memory::check(|| format!("reading {}", self.file), (rows * size_of::<Sphere>()) as u64, remedy)?;
         scene.spheres.reserve_exact(rows);
-        let (mut reader, mut rest) = (csv_core::Reader::new(), text.as_bytes());
-        let (mut row, mut columns, mut coloured) = (Row::default(), None, HashMap::new());
-        loop {
-            let byte = text.len() - rest.len();
-            if !row.read(&mut reader, &mut rest) {
-                break;
-            }
-            if row.len() == 1 && row.get(0) == Some("") {
-                continue;
-            }
-            let Some(columns) = &columns else {
-                columns = Some(columns_of(&row).map_err(|reason| at(byte, reason))?);
-                continue;
-            };
+        let text = self.text.trim_start_matches('\u{feff}');
+        let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
+        let (line, header) = lines.next().unwrap_or((1, ""));
+        let mut cells = Cells::default();
+        let columns = columns_of(&cells.of(header)).map_err(|reason| at(line, reason))?;
+        let mut coloured = HashMap::new();
+        for (line, row) in lines {
             let index = scene.spheres.len();
-            let values = Values { index, row: &row, columns };
+            let mut values = Values { index, texts: [None; COLUMNS.len()] };
+            values.read(&cells.of(row), &columns).map_err(|reason| at(line, reason))?;
             let mut sphere = || -> Result<Sphere, String> {
-                values.check()?;
                 let center = values.vector(0)?;
                 let radius = values.number(RADIUS)?;
-                if let Some(name) = values.text(MATERIAL) {
+                if let Some(name) = values.texts[MATERIAL] {
                     let material = index_of.get(name).copied();
                     let material = material.ok_or_else(|| missing_material(index, name).to_string())?;
                     return Ok(Sphere { center, radius, material });
@@ -99,11 +86,11 @@ impl<'a> Table<'a> {
                 coloured.insert(bits, material);
                 Ok(Sphere { center, radius, material })
             };
-            let sphere = sphere().map_err(|reason| at(byte, reason))?;
-            sphere.validate(index, scene.materials.len()).map_err(|error| at(byte, error.to_string()))?;
+            let sphere = sphere().map_err(|reason| at(line, reason))?;
+            sphere.validate(index, scene.materials.len()).map_err(|error| at(line, error.to_string()))?;
             scene.spheres.push(sphere);
         }
-        columns.map_or_else(|| columns_of(&row).map(drop).map_err(|reason| at(0, reason)), |_| Ok(()))
+        Ok(())
     }
 }
 
@@ -124,84 +111,68 @@ pub(super) fn added_material(
     Ok(index)
 }
 
-/// A row of a table.
+/// Reads rows.
 #[derive(Default)]
-struct Row {
-    /// The values, one after another, and where each ends.
+struct Cells {
+    reader: csv_core::Reader,
     text: Vec<u8>,
-    ends: Vec<usize>,
-    count: usize,
+    /// Where each value ends in the text. More than these no table has.
+    ends: [usize; 32],
 }
 
-impl Row {
-    /// Reads the next row; `false` after the last.
-    fn read(&mut self, reader: &mut csv_core::Reader, rest: &mut &[u8]) -> bool {
-        let mut length = 0;
-        self.count = 0;
-        loop {
-            let (text, ends) = (&mut self.text[length..], &mut self.ends[self.count..]);
-            let (result, read, written, ended) = reader.read_record(rest, text, ends);
-            *rest = &rest[read..];
-            (length, self.count) = (length + written, self.count + ended);
-            match result {
-                ReadRecordResult::InputEmpty => {}
-                ReadRecordResult::OutputFull => self.text.resize(2 * self.text.len() + 256, 0),
-                ReadRecordResult::OutputEndsFull => self.ends.resize(2 * self.ends.len() + 16, 0),
-                ReadRecordResult::Record => return true,
-                ReadRecordResult::End => return false,
-            }
-        }
-    }
-
-    fn len(&self) -> usize {
-        self.count
-    }
-
-    fn get(&self, index: usize) -> Option<&str> {
-        let end = *self.ends[..self.count].get(index)?;
-        let start = index.checked_sub(1).map_or(0, |before| self.ends[before]);
-        Some(std::str::from_utf8(&self.text[start..end]).unwrap_or_default().trim())
-    }
-
-    fn iter(&self) -> impl Iterator<Item = &str> {
-        (0..self.count).filter_map(|index| self.get(index))
+impl Cells {
+    /// The values of a row.
+    fn of(&mut self, row: &str) -> Vec<&str> {
+        self.reader.reset();
+        self.text.resize(self.text.len().max(row.len() + 1), 0);
+        let (_, _, length, count) = self.reader.read_record(row.as_bytes(), &mut self.text, &mut self.ends);
+        let (text, ends) = (&mut self.text[length..], &mut self.ends[count..]);
+        let (_, _, _, last) = self.reader.read_record(&[], text, ends);
+        let ends = &self.ends[..count + last];
+        let value = |(start, end): (&usize, &usize)| {
+            let value = std::str::from_utf8(&self.text[*start..*end]).unwrap_or_default().trim();
+            // A quote after a space is not one of CSV.
+            value.strip_prefix('"').and_then(|value| value.strip_suffix('"')).unwrap_or(value)
+        };
+        [0].iter().chain(ends).zip(ends).map(value).collect()
     }
 }
 
 /// For each of [`COLUMNS`], which value of a row it is.
-fn columns_of(header: &Row) -> Result<[Option<usize>; COLUMNS.len()], String> {
-    let columns = COLUMNS.map(|name| header.iter().position(|own| own == name));
+fn columns_of(names: &[&str]) -> Result<[Option<usize>; COLUMNS.len()], String> {
+    let columns = COLUMNS.map(|name| names.iter().position(|own| *own == name));
     let is_there = columns.map(|column| column.is_some());
     let with_material = [true, true, true, true, true, false, false, false];
     let with_colour = [true, true, true, true, false, true, true, true];
     let is_known = [with_material, with_colour].contains(&is_there);
-    if is_known && header.len() == columns.iter().flatten().count() {
+    if is_known && names.len() == columns.iter().flatten().count() {
         return Ok(columns);
     }
-    let found = match header.iter().find(|name| !COLUMNS.contains(name)) {
+    let found = match names.iter().find(|name| !COLUMNS.contains(name)) {
         Some(name) if name.contains(';') => "separated by semicolons".to_owned(),
         Some(name) if name.contains('\t') => "separated by tabs".to_owned(),
-        Some("") => "with a column that has no name, as an index has none".to_owned(),
+        Some(&"") => "with a column that has no name, as an index has none".to_owned(),
         Some(name) => format!("with the unknown column {name:?}"),
         None => "not all that are needed, or too many".to_owned(),
     };
-    let header = header.iter().collect::<Vec<_>>().join(",");
+    let header = names.join(",");
     Err(format!(
-        "the first line of a table of spheres is {header:?}, {found}, but must name its columns: x,y,z,radius and either \
-         material or red,green,blue, each once, separated by commas, and no others"
+        "the first line of a table of spheres is {header:?}, {found}, but must name its columns: x,y,z,radius and either material \
+         or red,green,blue, each once, separated by commas, and no others"
     ))
 }
 
-/// The values of a row.
+/// The values of a row, in the order of [`COLUMNS`].
 struct Values<'a> {
     index: usize,
-    row: &'a Row,
-    columns: &'a [Option<usize>; COLUMNS.len()],
+    texts: [Option<&'a str>; COLUMNS.len()],
 }
 
-impl Values<'_> {
-    fn check(&self) -> Result<(), String> {
-        let (index, found, count) = (self.index, self.row.len(), self.columns.iter().flatten().count());
+impl<'a> Values<'a> {
+    fn read(&mut self, row: &[&'a str], columns: &[Option<usize>; COLUMNS.len()]) -> Result<(), String> {
+        self.texts = columns.map(|column| row.get(column?).copied());
+        let found = row.len();
+        let (index, count) = (self.index, columns.iter().flatten().count());
         if found == count {
             return Ok(());
         }
@@ -211,13 +182,8 @@ impl Values<'_> {
         ))
     }
 
-    /// A value; `None` if there is no such column.
-    fn text(&self, column: usize) -> Option<&str> {
-        self.row.get(self.columns[column]?)
-    }
-
     fn number(&self, column: usize) -> Result<f64, String> {
-        let (index, name, value) = (self.index, COLUMNS[column], self.text(column).unwrap_or_default());
+        let (index, name, value) = (self.index, COLUMNS[column], self.texts[column].unwrap_or_default());
         value.parse().map_err(|_| {
             format!("spheres[{index}].{name} is {value:?}, but must be a number such as -1.5 or 2e3")
         })
