@@ -60,9 +60,9 @@ impl FramesOptions {
     }
 }
 
-/// Of 45 degrees: a picture that turns more about its centre from one frame to the next, though the camera looks in
+/// Of 30 degrees: a picture that turns more about its centre from one frame to the next, though the camera looks in
 /// nearly the same direction, turns over.
-const LEAST_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+const LEAST_COSINE: f64 = 0.866;
 
 /// Pause before frames are looked at again that another run renders.
 const PAUSE: Duration = Duration::from_millis(100);

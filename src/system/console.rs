@@ -60,7 +60,7 @@ fn harmless(text: &str) -> String {
 }
 
 /// Longest line of a message about what the user gave, characters.
-const LINE: usize = 390;
+const LINE: usize = 320;
 
 /// A message about what the user gave, which may be as long as a file: the middle of a long line is left out.
 pub fn brief(text: &str) -> String {

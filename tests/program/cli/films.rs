@@ -68,6 +68,30 @@ fn denoising_a_film_renders_nothing() {
     assert_eq!(backend.matches("cpu").count(), 1, "{backend}");
 }
 
+/// One file under two names is one file.
+#[cfg(unix)]
+#[test]
+fn a_merge_writes_each_file_once() {
+    let directory = temp();
+    let at = |name: &str| directory.path().join(name);
+    render(directory.path(), &["--sample-range", "0..4", "--out", "a.exr"]);
+    render(directory.path(), &["--sample-range", "4..8", "--out", "b.exr"]);
+    std::fs::create_dir(at("real")).unwrap();
+    std::os::unix::fs::symlink("real", at("link")).unwrap();
+    let whole = at("m.exr");
+    for (one, other) in [
+        ("m.exr", "./m.exr"),
+        ("m.exr", whole.to_str().unwrap()),
+        ("real/m.exr", "link/m.exr"),
+        ("m.png", "real/../m.png"),
+        ("m.exr", "link/../a.exr"),
+    ] {
+        let merge = ["merge", "a.exr", "b.exr", "--out", one, "--out", other];
+        refused_in(&directory, &merge, &[other, "give each file its own name"]);
+    }
+    refused_in(&directory, &["merge", "a.exr", "./a.exr", "--out", "m.exr"], &["named twice"]);
+}
+
 #[test]
 fn films_of_other_pictures_are_not_resumed() {
     let directory = temp();

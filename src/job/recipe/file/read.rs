@@ -1,7 +1,7 @@
 //! From TOML to a recipe: serde checks the form, [`recipe_of`] the values.
 
 use super::named;
-use super::table::{Table, added_material};
+use super::table::{Table, added_material, text_of};
 use crate::job::recipe::{DEFAULT_SAMPLES_PER_PIXEL, Recipe};
 use crate::job::render::{DEPTH_LIMIT, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::scene::animation::{FRAME_LIMIT, Keyframe};
@@ -48,21 +48,6 @@ pub fn load(path: &Path) -> anyhow::Result<Recipe> {
     let stem = path.file_stem().map_or_else(|| label.clone(), |stem| stem.to_string_lossy().into_owned());
     let directory = path.parent().unwrap_or(Path::new(""));
     Ok(Recipe { name: stem, ..parse_in(Some(directory), &text, &label)? })
-}
-
-/// The text of a file.
-///
-/// # Errors
-/// What the file is instead, by its first bytes, and what to do.
-pub(super) fn text_of(path: &Path, bytes: Vec<u8>) -> anyhow::Result<String> {
-    let found = match bytes.as_slice() {
-        [0x1f, 0x8b, ..] => "is packed by gzip; unpack it",
-        [b'P', b'K', 3, 4, ..] => "is a ZIP archive or a workbook of a spreadsheet; save it as CSV",
-        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "is UTF-16 text; save it as UTF-8",
-        [0x89, b'P', b'N', b'G', ..] => "is a PNG picture; name a text file",
-        _ => "is not UTF-8 text; save it as UTF-8",
-    };
-    String::from_utf8(bytes).map_err(|_| anyhow!("cannot read {}: it {found}", path.shown()))
 }
 
 /// Reads the text of a scene file. `name` becomes the name of the recipe, and messages start with it.
@@ -131,24 +116,25 @@ fn in_its_place(error: &toml::de::Error) -> Option<String> {
         let unknown = toml::from_str::<T>(text).err().map(|error| error.message().to_owned());
         unknown.unwrap_or_default().rsplit("expected").next().unwrap_or_default().to_owned()
     }
+    const IN_MATERIAL: &str = "in a material of a kind that has it";
     let key = error.message().strip_prefix("unknown field ")?.split(',').next()?;
     let place = match key {
         "`scene`" | "`scene_mark`" | "`spheres`" => "above the first [table]",
         "`frame`" => "in [[keyframes]]",
-        "`kind`" => "in a material",
+        "`kind`" => IN_MATERIAL,
         _ => [
             (keys::<RawFile>("''=0"), "in square brackets, as a table of its own"),
             (keys::<RawCamera>("''=0"), "in [camera]"),
             (keys::<RawSettings>("''=0"), "in [render]"),
             (keys::<RawSky>("''=0"), "in [sky]"),
             (keys::<RawSphere>("''=0"), "in [[spheres]]"),
-            (keys::<Material>("kind='metal'\n''=0"), "in a material"),
-            (keys::<Material>("kind='dielectric'\n''=0"), "in a material"),
+            (keys::<Material>("kind='metal'\n''=0"), IN_MATERIAL),
+            (keys::<Material>("kind='dielectric'\n''=0"), IN_MATERIAL),
         ]
         .iter()
         .find_map(|(keys, place)| keys.contains(key).then_some(*place))?,
     };
-    Some(format!("the key {key} does not belong here; write it {place}"))
+    Some(format!("unknown key {key} here; write it {place}"))
 }
 
 #[derive(Deserialize)]
@@ -322,10 +308,7 @@ fn recipe_of<'a>(
         }
     };
     if raw.camera.get_ref().frame.is_some() {
-        return Err(refuse(
-            raw.camera.span(),
-            "the key `frame` does not belong here; write it in [[keyframes]]",
-        ));
+        return Err(refuse(raw.camera.span(), "unknown key `frame` here; write it in [[keyframes]]"));
     }
     let camera = camera_of(&raw.camera, None)?;
     let (default, own) = (RenderSettings::default(), raw.render);

@@ -1,7 +1,6 @@
 //! The spheres of a scene of many as a table: CSV, in a file of its own or in a string of the scene file. TOML takes 3 kB
 //! of memory per sphere.
 
-use super::read::text_of;
 use crate::scene::{Material, Scene, Sphere, missing_material};
 use crate::system::files::{self, ShownPath};
 use crate::system::memory;
@@ -28,6 +27,21 @@ pub(super) struct Table<'a> {
     /// The file that it is in, and the lines of that file before it.
     file: String,
     lines_before: usize,
+}
+
+/// The text of a file.
+///
+/// # Errors
+/// What the file is instead, by its first bytes, and what to do.
+pub(super) fn text_of(path: &Path, bytes: Vec<u8>) -> anyhow::Result<String> {
+    let found = match bytes.as_slice() {
+        [0x1f, 0x8b, ..] => "is packed by gzip; unpack it",
+        [b'P', b'K', 3, 4, ..] => "is a ZIP archive or a workbook of a spreadsheet; save it as CSV",
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "is UTF-16 text; save it as UTF-8",
+        [0x89, b'P', b'N', b'G', ..] => "is a PNG picture; name a text file",
+        _ => "is not UTF-8 text; save it as UTF-8",
+    };
+    String::from_utf8(bytes).map_err(|_| anyhow!("cannot read {}: it {found}", path.shown()))
 }
 
 impl<'a> Table<'a> {
@@ -62,7 +76,7 @@ impl<'a> Table<'a> {
         let text = self.text.trim_start_matches('\u{feff}');
         let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
         let (line, header) = lines.next().unwrap_or((1, ""));
-        let mut cells = Cells::default();
+        let mut cells = Cells::new();
         let columns = columns_of(&cells.of(header)).map_err(|reason| at(line, reason))?;
         let mut coloured = HashMap::new();
         for (line, row) in lines {
@@ -112,7 +126,6 @@ pub(super) fn added_material(
 }
 
 /// Reads rows.
-#[derive(Default)]
 struct Cells {
     reader: csv_core::Reader,
     text: Vec<u8>,
@@ -121,6 +134,10 @@ struct Cells {
 }
 
 impl Cells {
+    fn new() -> Self {
+        Cells { reader: csv_core::Reader::new(), text: Vec::new(), ends: [0; 32] }
+    }
+
     /// The values of a row.
     fn of(&mut self, row: &str) -> Vec<&str> {
         self.reader.reset();
