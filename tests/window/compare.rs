@@ -62,7 +62,7 @@ fn two_devices_are_compared_in_numbers() {
             }
             _ => send(&mut harness, Command::CompareWith(Partner::Device(other))),
         }
-        let label = if other == Device::Gpu { "GPU" } else { "f64" };
+        let label = if other == Device::Gpu { "GPU" } else { "Reference" };
         check_figures(&mut harness, ["CPU", label]);
         // The other one continues to the next goal, and both again have the same samples.
         let before = harness.state().status().samples_per_pixel;

@@ -68,7 +68,7 @@ fn a_kept_picture_shields_the_traced_one() {
     harness.key_up(Key::W);
     assert_eq!(harness.state().shown_document().camera, camera);
     assert_eq!((harness.state().looked(), harness.state().selected()), (Some(0), None));
-    for command in [Command::Save, Command::CopyPicture, Command::Keep] {
+    for command in [Command::Save, Command::Copy, Command::Keep] {
         assert!(harness.state().disabled_reason(command).is_some(), "{command:?}");
     }
     harness.key_press(Key::Escape);
@@ -166,7 +166,7 @@ fn the_compared_picture_is_deleted() {
 
 /// The first sentence of the answer, once it is there.
 fn only_noise(harness: &mut Harness<'_, Window>) -> String {
-    send(harness, Command::OnlyNoise);
+    send(harness, Command::AreSame);
     until(harness, "an answer", |window| window.verdict().is_some());
     harness.state().verdict().unwrap().1.to_owned()
 }

@@ -29,7 +29,7 @@ fn the_picture_is_copied_without_exposure() {
     until(&mut harness, "the end", has_samples(16));
     let mut bytes = Vec::new();
     for _ in 0..2 {
-        send(&mut harness, Command::CopyPicture);
+        send(&mut harness, Command::Copy);
         let image = copied(&mut harness, Duration::from_secs(60)).expect("nothing was copied");
         assert_eq!(image.size, [32, 18]);
         bytes.push(image.pixels);

@@ -49,7 +49,7 @@ pub struct Snapshot {
     pub is_held: bool,
     /// Only sky and ground are in sight, unlike from the stage's camera.
     pub is_lost: bool,
-    /// Whether the pointer has been over the picture.
+    /// Whether the pointer is over the traced picture, or was so last.
     pub has_pixel: bool,
     /// Whether there is a list of paths.
     pub has_paths: bool,

@@ -162,8 +162,6 @@ table! {
     ShowInFolder "Show in folder", "Opens the folder of the file that was saved or opened last",
         needs(|f| !f.model.remembered.recent.is_empty(), "Nothing has been saved or opened yet"),
         also("directory explorer finder");
-    CopyPicture "Copy picture", "Copies the picture at full size", needs(is_live, KEPT_IS_SHOWN),
-        also("clipboard");
     Quit "Quit", "Closes the window; the next one begins where this one ends", keys(CTRL, Key::Q), line(),
         also("close exit");
 
@@ -246,17 +244,14 @@ table! {
         on(|f| f.has_sight);
     Wipe "Wipe", "Drag a divider between this picture and the one that it is compared with", key(Key::C), line(),
         off(|f| f.model.nothing_to_compare()), on(|f| f.model.view.mode() == Some(Mode::Wipe)), also("compare");
-    Flip "Flip between the two", "Shows the other picture in place of this one; again returns", key(Key::J),
+    Flip "Flip", "Shows the other picture in place of this one; again returns", key(Key::J),
         off(|f| f.model.nothing_to_compare()), on(|f| f.model.view.is_hidden()), also("compare blink kept");
     Difference "Difference", "Shows where the two differ, and by how much", key(Key::X),
         off(|f| f.model.nothing_to_compare().or_else(|| f.model.not_subtractable())),
         on(|f| f.model.view.mode() == Some(Mode::Difference)), also("compare subtract");
-    OnlyNoise "Is it only noise?", "Tests whether the two differ by more than chance", keys(SHIFT, Key::N),
-        off(|f| match f.model.view.partner(f.document()) {
-            Some(Partner::Raw) => Some("Both are made of the same samples".to_owned()),
-            _ => f.model.nothing_to_compare().or_else(|| f.model.not_subtractable()),
-        }),
-        also("compare same");
+    AreSame "Are they the same?", "Tests whether the two differ by more than chance", keys(SHIFT, Key::N),
+        off(|f| f.model.nothing_to_compare().or_else(|| f.model.not_subtractable())),
+        also("compare only noise");
     CompareDevices "Compare CPU and GPU",
         "Traces on both in turns: their pictures, errors over time, and speeds", keys(SHIFT, Key::C),
         off(|_| Device::Gpu.unavailable()),
@@ -267,8 +262,7 @@ table! {
     ListPaths "Paths of this pixel", "Shows the paths of the pixel under the pointer, ray by ray", key(Key::T),
         line(), off(|f| match f.no_rays() {
             Some(reason) => Some(reason.to_owned()),
-            None if !is_live(f) => Some(KEPT_IS_SHOWN.to_owned()),
-            None => (!f.has_pixel).then(|| "Point at the picture first".to_owned()),
+            None => (!f.has_pixel).then(|| "Point at the traced picture first".to_owned()),
         }),
         also("rays bounce trace");
     Code "Code", "Shows the lines of the tracer that are new in this stage", key(Key::K), off(no_presentation),
@@ -293,12 +287,7 @@ table! {
     ZoomOut "Zoom out", "Ctrl and the wheel zoom at the pointer", key(Key::OpenBracket);
     Denoise "Denoise", "Filters the noise away and says how wrong the result is; films are saved as they are",
         key(Key::V),
-        off(|f| match f.model.view.mode() {
-            Some(_) if f.model.view.partner != Partner::Raw => {
-                Some("Compared pictures are shown raw; compare with Without denoising instead".to_owned())
-            }
-            _ => None,
-        }),
+        off(|f| f.model.view.mode().map(|_| "Pictures that are compared are shown raw".to_owned())),
         on(|f| f.model.view.is_denoised), also("filter smooth noise clean oidn");
     NextSphere "Next sphere", "Selects the next sphere of the scene", key(Key::Period),
         needs(has_spheres, "There is no sphere in this scene"), also("select");

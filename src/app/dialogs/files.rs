@@ -65,11 +65,12 @@ pub struct PathField {
     purpose: Purpose,
     folder: PathBuf,
     text: String,
+    was_focused: bool,
 }
 
 impl PathField {
     pub fn new(purpose: Purpose, folder: PathBuf) -> Self {
-        PathField { purpose, folder, text: String::new() }
+        PathField { purpose, folder, text: String::new(), was_focused: false }
     }
 
     pub(super) fn ui(&mut self, ui: &mut Ui) -> Outcome {
@@ -77,7 +78,7 @@ impl PathField {
         let field = TextEdit::singleline(&mut self.text).desired_width(f32::INFINITY);
         let field = ui.add(field.hint_text("File name; or drop the file on the window"));
         named(&field, "File name");
-        focus(ui, &field, &self.text);
+        focus(ui, &field, &self.text, &mut self.was_focused);
         let path = self.folder.join(self.text.trim());
         // A path that is mistyped is not lost.
         let is_missing = !self.text.trim().is_empty() && !path.exists();
@@ -91,10 +92,10 @@ impl PathField {
     }
 }
 
-/// Focuses a field of text, all of which is selected, until something else takes the focus.
-fn focus(ui: &Ui, field: &egui::Response, text: &str) {
-    // Enter, which takes the focus, is still to be seen.
-    if !field.lost_focus() && ui.memory(|memory| memory.focused().is_none()) {
+/// Focuses a field of text, all of which is selected, when its dialog opens.
+fn focus(ui: &Ui, field: &egui::Response, text: &str, was_focused: &mut bool) {
+    *was_focused |= field.has_focus();
+    if !*was_focused {
         field.request_focus();
         if let Some(mut state) = TextEdit::load_state(ui.ctx(), field.id) {
             let end = CCursor::new(text.chars().count());
@@ -131,6 +132,7 @@ pub struct SaveBox {
     what: What,
     size: Size,
     other: [u32; 2],
+    was_focused: bool,
     /// Frames of an animation, and samples per pixel of each.
     frames: u32,
     samples: u32,
@@ -144,6 +146,7 @@ impl SaveBox {
             what,
             size: Size::Seen,
             other: document.size(),
+            was_focused: false,
             frames: document.frame_count(),
             samples: document
                 .stop
@@ -183,7 +186,7 @@ impl SaveBox {
             ui.add(TextEdit::singleline(&mut self.name).desired_width(f32::INFINITY))
         });
         named(&field, "Name");
-        focus(ui, &field, &self.name);
+        focus(ui, &field, &self.name, &mut self.was_focused);
         // A typed ending chooses the format.
         let typed = Path::new(self.name.trim()).extension();
         let is_typed = |ending: &str| {
@@ -203,11 +206,16 @@ impl SaveBox {
         ui.add_space(8.0);
         ui.columns_const(|[left, right]| {
             small(left, "What");
+            let before = self.what;
             let can_move = snapshot.no_rays().is_none();
             for (what, label, help, _) in What::ALL {
                 if what != What::Animation || can_move {
                     option(left, &mut self.what, what, label, help);
                 }
+            }
+            if self.what != before && of_ending.is_some() {
+                // Instead of the ending that was typed.
+                self.name = Path::new(self.name.trim()).with_extension("").display().to_string();
             }
             right.add_enabled_ui(self.what != What::Scene, |ui| self.sizes(ui, snapshot));
         });
@@ -269,7 +277,10 @@ impl SaveBox {
         small(ui, "Size");
         for (size, label) in [
             (Size::Seen, "As it is rendered"),
-            (Size::Book, "As in the book"),
+            (
+                Size::Book,
+                if snapshot.document().stage().is_some() { "As in the book" } else { "As in the scene" },
+            ),
             (Size::Twice, "Twice as large"),
             (Size::Other, "Other"),
         ] {

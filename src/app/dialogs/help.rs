@@ -16,7 +16,7 @@ const MOUSE: [(&str, &str, &str); 17] = [
     ("The picture", "Zoom at the pointer", "Ctrl and wheel"),
     ("The picture", "Move the picture", "Shift drag"),
     ("The picture", "Select a sphere; on the sky: none", "Click"),
-    ("The picture", "Move the selected sphere; with Ctrl level", "Drag it"),
+    ("The picture", "Move the selected sphere on its level; with Ctrl anywhere", "Drag it"),
     ("The picture", "Change its radius", "Drag its dot"),
     ("The picture", "A menu of what is there", "Right click"),
     ("The picture", "The paths of a pixel", "Alt and click"),

@@ -99,7 +99,9 @@ impl Dialogs {
         let (purpose, from, path) = self.system.chosen()?;
         match (purpose, path, &mut self.open) {
             (Purpose::Folder, Some(folder), Some(Dialog::Save(save))) => save.folder = folder,
-            (Purpose::Folder, ..) => self.system.is_there = false,
+            (Purpose::Folder, None, _) => self.system.is_there = false,
+            // Its dialog was closed meanwhile.
+            (Purpose::Folder, ..) => {}
             (_, Some(path), _) => return Some(Outcome::Named(purpose, path)),
             (_, None, _) => self.open(Dialog::Path(PathField::new(purpose, from))),
         }

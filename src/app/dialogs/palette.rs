@@ -19,7 +19,7 @@ const FIELDS: [(&str, &str); 5] = [
     ("Field of view", "fov angle zoom lens"),
     ("Defocus angle", "blur defocus depth of field dof aperture bokeh"),
     ("Focus distance", "focus sharp"),
-    ("Size and samples", "noise grain quality spp resolution pixels stop"),
+    ("Render", "size samples noise grain quality spp resolution pixels stop sampler seed depth"),
 ];
 
 /// How well a text finds a command; less is better. `None` if it does not.
@@ -171,7 +171,7 @@ mod tests {
             ("fov", Command::Field("Field of view")),
             ("beamer", Command::Present),
             ("homework", Command::CheckPicture),
-            ("resolution", Command::Field("Size and samples")),
+            ("resolution", Command::Field("Render")),
             ("11.4", Command::Stage(Stage::find("glass-schlick").unwrap())),
         ] {
             assert_eq!(first(text), Some(expected), "{text}");

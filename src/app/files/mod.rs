@@ -6,11 +6,12 @@ pub mod scene_file;
 pub mod store;
 
 use crate::app::commands::Command;
-use crate::app::model::Document;
+use crate::app::model::{Document, Wish};
 use crate::app::toolkit::{Answers, Toasts};
 use crate::app::tracing::subject::Subject;
 use crate::backends::BackendChoice;
 use crate::batch::{Event, FramesOptions, Studio, write_frames};
+use crate::comparison::Picture;
 use crate::denoise::{self, Denoised};
 use crate::film::Film;
 use crate::job::output::{Description, OutputFormat, is_named_picture, key, write_image};
@@ -31,6 +32,9 @@ use std::time::Duration;
 
 /// A file that the window shows, and the film, if it has one.
 pub type Opened = (Saved, Option<SavedFilm>);
+
+/// A picture that was to be saved, and as what.
+pub type Lost = (Document, (OutputFormat, PathBuf));
 
 /// Something that was written or made.
 pub enum Made {
@@ -55,15 +59,16 @@ struct Making {
 #[derive(Default)]
 pub struct Files {
     pub scene_file: SceneFile,
-    /// To be saved once there are samples.
-    pub pending_save: Option<(OutputFormat, PathBuf)>,
-    /// To be copied once there are samples.
-    pub pending_copy: bool,
+    /// To be saved and copied once there are samples.
+    pub save: Wish<(OutputFormat, PathBuf)>,
+    pub copy: Wish<()>,
     /// Files that were written.
     saved: Answers<Made>,
     /// Results of work in the background.
     made: Answers<Made>,
     making: Option<Making>,
+    /// Work that was stopped, until it has ended.
+    stopped: Answers<Made>,
     /// Files that were opened, and pictures of other programs, which say nothing about how they were made.
     pub opened: Answers<Result<Opened, PathBuf>>,
     /// Pictures for the clipboard, and what they are, in words.
@@ -73,7 +78,7 @@ pub struct Files {
 impl Files {
     /// Whether the film is needed at the size that it has.
     pub fn needs_film(&self) -> bool {
-        self.pending_save.is_some() || self.pending_copy
+        self.save.open().is_some() || self.copy.open().is_some()
     }
 
     /// Renders the document with this many samples per pixel, and saves it.
@@ -131,6 +136,9 @@ impl Files {
         if let Some(making) = &self.making {
             return Err(format!("wait until this has ended, or stop it: {}", making.words));
         }
+        if self.stopped.is_open() {
+            return Err("what was stopped is still ending; try again in a moment".to_owned());
+        }
         let (interrupt, percent) = (Arc::new(Interrupt::unheard()), Arc::new(AtomicU32::new(0)));
         self.making =
             Some(Making { interrupt: Arc::clone(&interrupt), words, percent: Arc::clone(&percent), name });
@@ -141,10 +149,10 @@ impl Files {
 
     /// Stops what is made in the background. Its answer does not matter then.
     pub fn stop_saving(&mut self) {
-        self.pending_save = None;
+        self.save = Wish::default();
         if let Some(making) = self.making.take() {
             making.interrupt.flag().store(true, Ordering::Relaxed);
-            self.made = Answers::default();
+            self.stopped = std::mem::take(&mut self.made);
         }
     }
 
@@ -157,7 +165,7 @@ impl Files {
     /// The name of the file that is saved once its picture has been rendered.
     pub fn unsaved(&self) -> Option<String> {
         let name = self.making.as_ref().and_then(|making| making.name.clone());
-        name.or_else(|| Some(name_of(&self.pending_save.as_ref()?.1)))
+        name.or_else(|| Some(name_of(&self.save.open()?.1)))
     }
 
     /// Whether something is still rendered to be saved, or written.
@@ -191,39 +199,45 @@ impl Files {
         context.request_repaint_after(Duration::from_millis(250));
     }
 
-    /// Saves and copies what was asked for, once there are samples.
-    pub fn follow(&mut self, context: &Context, subject: &Subject<'_>) {
-        if !subject.has_samples() {
-            return;
-        }
-        if let Some(named) = self.pending_save.take() {
-            self.save(context, subject, named);
-        }
-        if std::mem::take(&mut self.pending_copy) {
+    /// Saves and copies what was asked for, once there are samples; returns the picture to save that was left before.
+    pub fn follow(&mut self, context: &Context, subject: &Subject<'_>) -> Option<Lost> {
+        let (document, is_there) = (subject.document, subject.has_samples());
+        if let Some(Ok(())) = self.copy.take(document, is_there) {
             self.copy(context, subject);
         }
+        match self.save.take(document, is_there)? {
+            Ok(named) => self.save(context, subject, named),
+            Err(lost) => return Some(lost),
+        }
+        None
     }
 
-    /// Writes the film on the screen at the next end of a pass.
-    pub fn save(&mut self, context: &Context, subject: &Subject<'_>, named: (OutputFormat, PathBuf)) {
+    /// Writes the film on the screen as it is at the next end of a pass.
+    fn save(&mut self, context: &Context, subject: &Subject<'_>, named: (OutputFormat, PathBuf)) {
         let (document, tracing) = (subject.document.clone(), subject.tracing);
         let describe = describer(&document, tracing.main.status(), tracing.main.seconds_before);
         let answer = self.saved.promise(context);
-        let is_denoised = subject.denoised.is_some();
-        let work = move |film: &Film| write(film, is_denoised, &document, describe, named);
-        tracing.main.inspect(move |film| answer.give(work(film)));
+        let is_denoised = subject.is_denoised;
+        tracing.main.inspect(move |film| {
+            let copy = film.try_copy().map_err(|error| error.to_string());
+            answer.give_from("save", move || write(&copy?, is_denoised, &document, describe, named));
+        });
     }
 
     /// Resolves the film on the screen as it is saved with 8 bits, at the next end of a pass.
-    pub fn copy(&mut self, context: &Context, subject: &Subject<'_>) {
-        let (transfer, is_denoised) = (subject.document.rules().transfer, subject.denoised.is_some());
+    fn copy(&mut self, context: &Context, subject: &Subject<'_>) {
+        let (transfer, is_denoised) = (subject.document.rules().transfer, subject.is_denoised);
         let answer = self.copied.answer(context);
         subject.tracing.main.inspect(move |film| {
-            let denoised = denoised(film, is_denoised);
-            let film = denoised.as_ref().map_or(film, |denoised| &denoised.film);
-            let size = [film.width(), film.height()];
-            let picture = ColorImage::from_rgb(size.map(|pixels| pixels as usize), &film.to_rgb8(transfer));
-            answer.give(Ok((picture, format!("picture, {} × {}", size[0], size[1]))));
+            let copy = film.try_copy().map_err(|error| error.to_string());
+            answer.give_from("copy", move || {
+                let film = copy?;
+                let denoised = denoised(&film, is_denoised);
+                let film = denoised.as_ref().map_or(&film, |denoised| &denoised.film);
+                let size = [film.width(), film.height()];
+                let picture = ColorImage::from_rgb(size.map(|side| side as usize), &film.to_rgb8(transfer));
+                Ok((picture, format!("picture, {} × {}", size[0], size[1])))
+            });
         });
     }
 
@@ -254,6 +268,12 @@ impl Files {
             }
             Ok(opened) => Ok(Ok(opened)),
             Err(OpenError::Picture(_)) if is_named_picture(&path) => Ok(Err(path)),
+            Err(OpenError::Picture(_) | OpenError::Film(_)) if Picture::read(&path, None).is_ok() => {
+                Err(format!(
+                    "{} is the picture of another program, in floating point; Compare with a file shows it",
+                    name_of(&path)
+                ))
+            }
             Err(OpenError::Picture(_)) => {
                 Err(format!("{} is not a picture, film or scene (PNG, PPM, EXR, TOML)", path.display()))
             }

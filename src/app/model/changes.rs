@@ -55,7 +55,8 @@ impl Changes {
 
     /// What undo and redo would change, in words.
     pub fn labels(&self, document: &Document) -> [Option<&'static str>; 2] {
-        [self.earlier(document), self.later(document)].map(|other| Some(document.difference(other?)))
+        let undone = self.earlier(document).map(|earlier| document.difference(earlier));
+        [undone, self.later(document).map(|later| later.difference(document))]
     }
 
     /// The last state of a picture from this source.
@@ -105,8 +106,9 @@ impl Changes {
         self.moved.is_some_and(|at| at.elapsed() < SETTLE)
     }
 
-    /// Notes what has changed in this frame. Returns whether the document now needs a different film.
-    pub fn follow(&mut self, context: &Context, document: &Document) -> bool {
+    /// Notes what has changed in this frame. Returns whether the document now needs a different film. The picture of a
+    /// check, a visit, is no step.
+    pub fn follow(&mut self, context: &Context, document: &Document, is_visit: bool) -> bool {
         let is_by_hand = context.input(|input| input.pointer.any_down());
         let is_other_film = !document.has_same_film(&self.last);
         if *document != self.last && is_other_film && is_by_hand {
@@ -117,7 +119,7 @@ impl Changes {
         if self.done.back() != Some(document) {
             self.undone.clear();
         }
-        if !self.is_in_gesture {
+        if !self.is_in_gesture && !is_visit {
             end_step(&mut self.done, document);
         }
         is_other_film
@@ -145,6 +147,7 @@ fn restore(document: &mut Document, state: Document) {
 mod tests {
     use super::*;
     use crate::app::model::Origin;
+    use crate::progressive::Stop;
     use eframe::egui::{Event, Modifiers, PointerButton, Pos2, RawInput};
 
     #[test]
@@ -156,7 +159,7 @@ mod tests {
             changes.note_move();
             changes.moved = Instant::now().checked_sub(2 * SETTLE);
             document.camera.vfov_degrees += f64::from(step);
-            assert!(changes.follow(&context, &document));
+            assert!(changes.follow(&context, &document, false));
         }
         changes.undo(&mut document);
         assert_eq!(document.camera, first);
@@ -168,7 +171,7 @@ mod tests {
         let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
         let mut changes = Changes::new(document.clone());
         document.stop.seconds = Some(7.0);
-        assert!(!changes.follow(&context, &document), "the film stays the same");
+        assert!(!changes.follow(&context, &document, false), "the film stays the same");
         assert!(changes.earlier(&document).is_some());
         changes.undo(&mut document);
         assert_eq!(document.stop.seconds, None);
@@ -187,19 +190,23 @@ mod tests {
         let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
         let mut changes = Changes::new(document.clone());
         press(&context, true);
-        assert!(!changes.follow(&context, &document), "nothing has changed yet");
+        assert!(!changes.follow(&context, &document, false), "nothing has changed yet");
         for seconds in [7.0, 8.0] {
             document.stop.seconds = Some(seconds);
-            assert!(!changes.follow(&context, &document));
+            assert!(!changes.follow(&context, &document, false));
             assert!(changes.moved.is_none(), "the film stays the same, so nothing is previewed");
         }
         press(&context, false);
-        changes.follow(&context, &document);
+        changes.follow(&context, &document, false);
         document.stop.seconds = Some(9.0);
-        changes.follow(&context, &document);
+        changes.follow(&context, &document, false);
+        // A visit to another picture is no step.
+        let visited = Document { stop: Stop::at_samples(5), ..document.clone() };
+        changes.follow(&context, &visited, true);
+        changes.follow(&context, &document, false);
         for expected in [Some(8.0), None] {
             changes.undo(&mut document);
-            changes.follow(&context, &document);
+            changes.follow(&context, &document, false);
             assert_eq!(document.stop.seconds, expected);
         }
         assert!(changes.earlier(&document).is_none());

@@ -10,6 +10,8 @@ use std::sync::{Arc, OnceLock};
 pub struct CheckedScene {
     scene: Arc<Scene>,
     rules: Rules,
+    /// The edit that made it, in words.
+    pub change: &'static str,
     /// The job of the scene, or why there is none; usable for any camera and size.
     base: OnceLock<Result<RenderJob, JobError>>,
 }
@@ -17,7 +19,7 @@ pub struct CheckedScene {
 impl CheckedScene {
     /// A scene that has not been checked yet.
     pub fn new(scene: Arc<Scene>, rules: Rules) -> Self {
-        CheckedScene { scene, rules, base: OnceLock::new() }
+        CheckedScene { scene, rules, change: "spheres", base: OnceLock::new() }
     }
 
     /// The scene.

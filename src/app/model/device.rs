@@ -63,9 +63,11 @@ impl Device {
         match self {
             Device::Cpu => ["cpu", "CPU", "Trace on the processor"],
             Device::Gpu => ["gpu", "GPU", "Trace on the graphics card, usually many times faster"],
-            Device::Reference => {
-                ["reference", "f64", "Trace with 16 digits instead of 7, slowly, to show rounding errors"]
-            }
+            Device::Reference => [
+                "reference",
+                "Reference",
+                "Trace with 16 digits instead of 7, slowly, to show rounding errors",
+            ],
         }
     }
 
@@ -100,16 +102,10 @@ impl Device {
         if self == other { Device::Cpu } else { other }
     }
 
-    /// The backend for the device, with these lanes and threads instead of those in the options.
-    pub fn backend(
-        self,
-        options: &DeviceOptions,
-        lanes: Option<usize>,
-        threads: Option<usize>,
-    ) -> BackendChoice {
-        let threads = threads.or(options.cpu.threads).or_else(threads_of_window);
-        let lanes = lanes.or(options.cpu.lanes);
-        let cpu = CpuOptions { lanes, threads, low_priority: true, ..options.cpu };
+    /// The backend for the device.
+    pub fn backend(self, options: &DeviceOptions) -> BackendChoice {
+        let threads = options.cpu.threads.or_else(threads_of_window);
+        let cpu = CpuOptions { threads, low_priority: true, ..options.cpu };
         // A user who presses the button wants it, so a software adapter is accepted.
         let dispatch_target = options.gpu.dispatch_target.min(INTERACTIVE_TARGET);
         match self {
@@ -132,26 +128,16 @@ impl Device {
     }
 }
 
-/// Number of cores of this machine.
-pub fn core_count() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
-}
-
 /// The default number of threads. With more than two cores, one is left to the window. With fewer, that would cost half
 /// of the speed or more, and short passes keep the window responsive too.
 fn threads_of_window() -> Option<usize> {
-    let cores = core_count();
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
     (cores > 2).then(|| cores - 1)
 }
 
 /// The best level of this processor.
 pub fn best_isa() -> Isa {
     Isa::available().into_iter().max().unwrap_or(Isa::Portable)
-}
-
-/// The lane counts for which this processor has kernels.
-pub fn lane_counts() -> Vec<usize> {
-    Isa::available().last().map_or_else(Vec::new, |isa| isa.lane_counts().to_vec())
 }
 
 #[cfg(test)]
@@ -162,11 +148,10 @@ mod tests {
     fn every_device_has_its_backend_and_says_what_is_wrong() {
         let options = DeviceOptions::default();
         for device in Device::ALL {
-            let choice = device.backend(&options, None, None);
+            let choice = device.backend(&options);
             assert_eq!((Device::of(&choice), choice.name()), (device, device.name()));
             assert!(device.unavailable().is_none_or(|reason| reason.len() > 10));
         }
-        assert!(!lane_counts().is_empty());
     }
 
     #[test]
@@ -176,25 +161,17 @@ mod tests {
         let gpu =
             GpuOptions { adapter: Some("mine".to_owned()), dispatch_target: long, ..GpuOptions::default() };
         let options = DeviceOptions { cpu, gpu: gpu.clone() };
-        let BackendChoice::Cpu(found) = Device::Cpu.backend(&options, None, Some(2)) else {
-            panic!("no CPU")
-        };
-        assert_eq!((found.threads, found.lanes, found.low_priority), (Some(2), None, true));
-        let BackendChoice::Gpu(found_gpu) = Device::Gpu.backend(&options, None, None) else {
-            panic!("no GPU")
-        };
+        let BackendChoice::Cpu(found) = Device::Cpu.backend(&options) else { panic!("no CPU") };
+        assert_eq!((found.threads, found.lanes, found.low_priority), (Some(3), None, true));
+        let BackendChoice::Gpu(found_gpu) = Device::Gpu.backend(&options) else { panic!("no GPU") };
         assert_eq!((found_gpu.adapter.as_deref(), found_gpu.allow_software), (Some("mine"), true));
         assert_eq!(found_gpu.dispatch_target, INTERACTIVE_TARGET, "the window stays responsive");
         let short = std::time::Duration::from_millis(1);
         let options = DeviceOptions::of(&BackendChoice::Gpu(GpuOptions { dispatch_target: short, ..gpu }));
-        let BackendChoice::Gpu(found) = Device::Gpu.backend(&options, None, None) else { panic!("no GPU") };
+        let BackendChoice::Gpu(found) = Device::Gpu.backend(&options) else { panic!("no GPU") };
         assert_eq!(found.dispatch_target, short);
         let options = DeviceOptions::of(&BackendChoice::Reference { threads: Some(5) });
-        let found = Device::Reference.backend(&options, None, None);
+        let found = Device::Reference.backend(&options);
         assert_eq!(found, BackendChoice::Reference { threads: Some(5) });
-        let usual = Device::Reference.backend(&DeviceOptions::default(), None, None);
-        let cores = core_count();
-        let threads = if cores > 2 { Some(cores - 1) } else { None };
-        assert_eq!(usual, BackendChoice::Reference { threads });
     }
 }

@@ -97,7 +97,7 @@ impl Document {
         (is_own && !self.is_from_file).then_some(self.stop)
     }
 
-    /// A name for the change from `other`.
+    /// A name for the change from `other`, which was before.
     pub fn difference(&self, other: &Document) -> &'static str {
         let (mine, theirs) = (&self.camera, &other.camera);
         let [settings, of_other] =
@@ -105,12 +105,7 @@ impl Document {
         if !Arc::ptr_eq(&self.origin, &other.origin) {
             "change of picture"
         } else if !Arc::ptr_eq(&self.checked, &other.checked) {
-            match self.scene().spheres.len().cmp(&other.scene().spheres.len()) {
-                std::cmp::Ordering::Equal if self.scene().sky != other.scene().sky => "sky",
-                std::cmp::Ordering::Equal => "sphere",
-                std::cmp::Ordering::Greater => "added sphere",
-                std::cmp::Ordering::Less => "deleted sphere",
-            }
+            if self.has_changed_scene() { self.checked.change } else { "spheres" }
         } else if mine.vfov_degrees != theirs.vfov_degrees {
             "field of view"
         } else if mine.defocus_angle_degrees != theirs.defocus_angle_degrees {

@@ -48,6 +48,20 @@ pub fn kind_word(material: &Material) -> &'static str {
 const ADDED: &str = "added";
 
 impl Edit {
+    /// What it changes in a scene, in words.
+    pub fn name(&self, scene: &Scene) -> &'static str {
+        match *self {
+            Edit::Change(index, body) => match Body::of(scene, index) {
+                Some(before) if before.material != body.material => "material",
+                Some(before) if before.radius != body.radius => "radius",
+                _ => "place of the sphere",
+            },
+            Edit::Add(_) => "added sphere",
+            Edit::Delete(_) => "deleted sphere",
+            Edit::Sky(_) => "sky",
+        }
+    }
+
     /// Edits `scene`. Returns the sphere that is selected then. An edit of a sphere that does not exist changes nothing.
     pub fn apply(&self, scene: &mut Scene) -> Option<usize> {
         match *self {

@@ -18,10 +18,11 @@ mod sizing;
 pub mod spheres;
 mod state;
 mod view;
+mod wish;
 
 pub use checked::CheckedScene;
 pub use companion::file_url;
-pub use device::{Device, DeviceOptions, adapter, best_isa, core_count, lane_counts};
+pub use device::{Device, DeviceOptions, adapter, best_isa};
 pub use document::Document;
 pub use edit::{Body, Edit, kind_word};
 pub use kept::{Kept, KeptList};
@@ -32,3 +33,4 @@ pub use show::{Channel, Show, Tone};
 pub use sizing::{Sizing, at_other, laid_over};
 pub use state::{Model, Presentation};
 pub use view::{Found, Mode, ViewState};
+pub use wish::Wish;

@@ -16,8 +16,6 @@ pub enum Partner {
     Book,
     /// The same picture, traced on another device.
     Device(Device),
-    /// The picture without denoising.
-    Raw,
     /// The kept picture, or picture of a file, of this number.
     Kept(u64),
     /// The picture of the user's own program, which is checked.
@@ -40,7 +38,6 @@ impl Partner {
             Partner::Stage(stage) => [format!("{} {}", stage.section, stage.title), stage.section.to_owned()],
             Partner::Book => ["The book’s arithmetic".to_owned(), "the book".to_owned()],
             Partner::Device(device) => both(device.label()),
-            Partner::Raw => ["Without denoising".to_owned(), "raw".to_owned()],
             Partner::Kept(number) => kept.find(number).map_or_else(Default::default, |found| {
                 let short = format!("kept {}", kept.place(found) + 1);
                 [kept.title(found), if found.document.is_some() { short } else { found.name.clone() }]
@@ -62,7 +59,6 @@ impl Partner {
                 "The same picture with the book’s own quadratic and its minimum distance of 0.001"
             }
             Partner::Device(_) => "The same samples on this device, which takes turns with the other one",
-            Partner::Raw => "The same samples, as they are traced",
             Partner::Kept(_) => "A picture that does not change",
             Partner::Mine => "The picture of your own program, beside that of its stage",
         }
@@ -73,7 +69,6 @@ impl Partner {
         let both = |name: &str| [name.to_owned(), name.to_owned()];
         match self {
             Partner::Device(_) => both(device.label()),
-            Partner::Raw => both("denoised"),
             Partner::Mine => [format!("Ours: {}", document.title()), "ours".to_owned()],
             Partner::Usual | Partner::Stage(_) | Partner::Book | Partner::Kept(_) => {
                 [document.title(), document.place()]
@@ -92,7 +87,7 @@ impl Partner {
             Partner::Stage(stage) => Some(Arc::new(Origin::of_stage(stage))),
             Partner::Book => Some(Arc::new(mine.origin.by_the_book(&mine.checked))),
             Partner::Device(_) => Some(Arc::clone(&mine.origin)),
-            Partner::Usual | Partner::Raw | Partner::Kept(_) | Partner::Mine => None,
+            Partner::Usual | Partner::Kept(_) | Partner::Mine => None,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Settings that the window keeps from one run to the next.
 
-use super::{Device, Sizing, ViewState, device};
+use super::{Device, Sizing, ViewState};
 use eframe::Storage;
 use eframe::egui::ThemePreference;
 use serde::{Deserialize, Serialize};
@@ -28,6 +28,26 @@ pub enum Tab {
     Controls,
 }
 
+impl Dock {
+    pub fn name(self) -> &'static str {
+        match self {
+            Dock::Path => "Path",
+            Dock::Error => "Error",
+        }
+    }
+}
+
+impl Tab {
+    pub fn name(self) -> &'static str {
+        match self {
+            Tab::Stage => "Stage",
+            Tab::Code => "Code",
+            Tab::Check => "Check",
+            Tab::Controls => "Controls",
+        }
+    }
+}
+
 /// Settings of the window, as opposed to those of the picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -48,10 +68,6 @@ pub struct Remembered {
     pub sizing: Sizing,
     /// The device that traces.
     pub device: Device,
-    /// Lanes per packet; `None` for as many as a register holds.
-    pub lanes: Option<usize>,
-    /// Number of threads; `None` for as many as leave the window responsive.
-    pub threads: Option<usize>,
     /// The files that were opened or saved last, newest first.
     pub recent: Vec<PathBuf>,
     /// The picture of another program that is being checked.
@@ -73,8 +89,6 @@ impl Default for Remembered {
             tab: Tab::Stage,
             sizing: Sizing::Viewport,
             device: Device::Cpu,
-            lanes: None,
-            threads: None,
             recent: Vec::new(),
             mine: None,
             mine_stage: None,
@@ -129,9 +143,6 @@ impl Remembered {
 
     /// Replaces settings that are not available on this machine; they may come from another machine or version.
     pub fn mended(mut self) -> Self {
-        let lanes = device::lane_counts();
-        self.lanes = self.lanes.filter(|count| lanes.contains(count));
-        self.threads = self.threads.filter(|count| (1..=device::core_count()).contains(count));
         if self.device.unavailable().is_some() {
             self.device = Device::Cpu;
         }
@@ -145,13 +156,6 @@ impl Remembered {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn impossible_settings_are_not_remembered() {
-        let strange = Remembered { lanes: Some(7), threads: Some(1_000_000), ..Remembered::default() };
-        let mended = strange.mended();
-        assert_eq!((mended.lanes, mended.threads), (None, None));
-    }
 
     #[test]
     fn a_device_that_this_machine_lacks_becomes_the_cpu() {

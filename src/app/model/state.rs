@@ -53,7 +53,7 @@ impl Model {
         self.has_panels() && self.remembered.has_info && self.remembered.tab == tab
     }
 
-    /// The backend for the chosen device, lanes and threads.
+    /// The backend for the chosen device.
     pub fn backend(&self) -> BackendChoice {
         self.backend_of(self.remembered.device)
     }
@@ -66,9 +66,9 @@ impl Model {
         }
     }
 
-    /// The backend for another device, with the chosen lanes and threads.
+    /// The backend for another device.
     pub fn backend_of(&self, device: Device) -> BackendChoice {
-        device.backend(&self.devices, self.remembered.lanes, self.remembered.threads)
+        device.backend(&self.devices)
     }
 
     /// All partners to choose from, without the other stages: those with which the picture has something in common.
@@ -77,13 +77,12 @@ impl Model {
         let mut partners: Vec<Partner> =
             Partner::usual(document).map(|_| Partner::Usual).into_iter().collect();
         if document.no_rays().is_none() {
-            let devices = [Device::Cpu, Device::Gpu, Device::Reference].into_iter();
-            partners.extend(devices.filter(|other| *other != device).map(Partner::Device));
+            let devices = [Device::Cpu, Device::Gpu].into_iter().filter(|other| *other != device);
+            partners.extend(devices.filter(|other| other.unavailable().is_none()).map(Partner::Device));
             if Partner::usual(document) != Some(Partner::Book) && document.origin.is_other_by_the_book() {
                 partners.push(Partner::Book);
             }
         }
-        partners.push(Partner::Raw);
         partners.extend(self.view.kept.mine.iter().map(|_| Partner::Mine));
         partners.extend(self.view.kept.iter().map(|kept| Partner::Kept(kept.number)));
         partners

@@ -107,23 +107,19 @@ impl ViewState {
     /// Compares with this partner.
     pub fn compare_with(&mut self, partner: Partner) {
         self.partner = partner;
-        self.is_denoised |= partner == Partner::Raw;
         if self.mode.is_none() {
             self.toggle(Mode::Wipe);
-        }
-    }
-
-    /// Filters the noise away, or not. Without that, there is no other picture without denoising.
-    pub fn toggle_denoise(&mut self) {
-        self.is_denoised = !self.is_denoised;
-        if self.partner == Partner::Raw {
-            (self.mode, self.partner) = (None, Partner::Usual);
         }
     }
 
     /// Whether the other picture hides the traced one.
     pub fn is_hidden(&self) -> bool {
         self.mode == Some(Mode::Flip)
+    }
+
+    /// Whether the other picture lies over this place, `0..=1` of the width.
+    pub fn is_other(&self, x: f64) -> bool {
+        self.is_hidden() || self.mode == Some(Mode::Wipe) && x < f64::from(self.divider)
     }
 
     /// Shows the traced picture, if another one hides it.
@@ -171,9 +167,9 @@ impl ViewState {
         }
     }
 
-    /// Whether the denoised picture is to be shown. Of pictures that are compared, both are raw, unless that is the question.
+    /// Whether the denoised picture is to be shown. Of pictures that are compared, both are raw.
     pub fn shows_denoised(&self) -> bool {
-        self.is_denoised && (self.mode.is_none() || self.partner == Partner::Raw)
+        self.is_denoised && self.mode.is_none()
     }
 
     /// The denoised picture of a run's film, if it is to be shown.

@@ -55,7 +55,7 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
 /// The stage in the middle of the window; device, pause and save at the right.
 fn actions(ui: &mut Ui, cx: &PanelContext) {
     let gap = ui.spacing().item_spacing.x;
-    let at_right = 3.0 * DEVICE + PAUSE + SAVE + 4.0 * gap;
+    let at_right = 2.0 * DEVICE + PAUSE + SAVE + 4.0 * gap;
     let window = ui.ctx().content_rect();
     let wanted = if window.width() < WITH_TITLE { 100.0 } else { STAGE } + 56.0;
     let room = ui.available_width() - at_right;
@@ -118,8 +118,9 @@ fn step(ui: &mut Ui, cx: &PanelContext, command: Command, sign: &str) {
 }
 
 fn device(ui: &mut Ui, cx: &PanelContext) {
-    let devices = [Device::Cpu, Device::Gpu];
-    command_switch(ui, cx, DEVICE, &devices.map(|device| (device.label(), Command::Device(device))));
+    let devices = [Device::Cpu, Device::Gpu].into_iter().filter(|device| device.unavailable().is_none());
+    let devices: Vec<_> = devices.map(|device| (device.label(), Command::Device(device))).collect();
+    command_switch(ui, cx, DEVICE, &devices);
 }
 
 fn pause(ui: &mut Ui, cx: &PanelContext) {

@@ -21,13 +21,15 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
     if cx.model.view.mode().is_some() && cx.model.not_subtractable().is_some() {
         command_button(ui, cx, Command::RenderAtPartnerSize, "Render at its size");
     }
-    let shown = cx.model.view.partner(cx.document()).map(|partner| cx.model.partner_name(partner));
+    let shown = cx.model.view.compared(cx.document()).map(|partner| cx.model.partner_name(partner));
     let about = About::new("Compare with", "Another picture, to be wiped, flipped and subtracted");
     ui.scope(|ui| {
         ui.spacing_mut().combo_width = ui.available_width() - 100.0;
-        list(ui, about, shown.as_deref().unwrap_or("Choose"), |ui| partners(ui, cx));
+        list(ui, about, shown.as_deref().unwrap_or("Choose…"), |ui| partners(ui, cx));
     });
-    tools(ui, cx);
+    if cx.model.view.mode().is_some() {
+        tools(ui, cx);
+    }
 }
 
 fn partners(ui: &mut Ui, cx: &PanelContext) {
@@ -51,12 +53,8 @@ fn partners(ui: &mut Ui, cx: &PanelContext) {
 pub fn tools(ui: &mut Ui, cx: &PanelContext) {
     const TOOLS: [(&str, Command); 3] =
         [("Wipe", Command::Wipe), ("Flip", Command::Flip), ("Difference", Command::Difference)];
-    ui.horizontal_wrapped(|ui| {
-        command_switch(ui, cx, 0.0, &TOOLS);
-        if cx.model.view.mode().is_some() {
-            command_button(ui, cx, Command::OnlyNoise, "Noise?");
-        }
-    });
+    command_switch(ui, cx, 0.0, &TOOLS);
+    command_button(ui, cx, Command::AreSame, &Command::AreSame.name());
 }
 
 /// Whether the two differ by more than noise, or how far the other picture is.
@@ -77,7 +75,7 @@ pub fn verdict(ui: &mut Ui, cx: &PanelContext) {
     }
     let [[_, name], _] = cx.model.side_names();
     match (&cx.other, cx.model.view.compared(cx.document())) {
-        (_, None | Some(Partner::Raw | Partner::Kept(_) | Partner::Mine)) => {}
+        (_, None | Some(Partner::Kept(_) | Partner::Mine)) => {}
         (Some(other), _) => {
             _ = small(ui, format!("{name}: {}", samples_words(other.samples_per_pixel)));
         }

@@ -1,9 +1,9 @@
-//! The left panel: camera, lens, sphere, size and samples, tracer.
+//! The left panel: camera, lens, sphere, render.
 
 use super::spheres;
 use crate::app::commands::{Command, PanelContext};
 use crate::app::model::spheres::Selected;
-use crate::app::model::{Body, Device, Document, Edit, Remembered, Sizing, core_count, lane_counts};
+use crate::app::model::{Body, Document, Edit, Remembered, Sizing};
 use crate::app::toolkit::widgets::{
     About, Header, Number, above, check, colour, command_button, entry, fold, group, hint, list, panel_line,
     point_words, row, switch, vector,
@@ -45,10 +45,7 @@ pub fn ui(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx:
         panel_line(ui);
     }
     ui.spacing_mut().item_spacing.y = 0.0;
-    size_and_samples(ui, document, remembered, cx);
-    if has_rays {
-        tracer(ui, document, remembered);
-    }
+    render(ui, document, remembered, cx);
 }
 
 /// Whether the picture is a stage before the chapters about the camera.
@@ -142,13 +139,8 @@ fn sphere(ui: &mut Ui, document: &mut Document, cx: &PanelContext) {
         }
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
-            for (name, command) in [
-                ("Focus", Command::FocusSphere),
-                ("Duplicate", Command::DuplicateSphere),
-                ("Delete", Command::DeleteSphere),
-            ] {
-                command_button(ui, cx, command, name);
-            }
+            command_button(ui, cx, Command::FocusSphere, "Focus");
+            command_button(ui, cx, Command::DeleteSphere, "Delete");
         });
     });
     if is_reset {
@@ -230,20 +222,29 @@ fn kind(ui: &mut Ui, material: Material, disabled_reason: Option<&str>) -> Mater
     switch(ui, width, material, &options).unwrap_or(material)
 }
 
-fn size_and_samples(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx: &PanelContext) {
+/// Size, end and settings of the render.
+fn render(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx: &PanelContext) {
     let (origin, size) = (Arc::clone(&document.origin), document.size());
     let is_own = document.has_own_size;
     let is_resized = is_own != origin.keeps_size() || (is_own && size != origin.size());
-    let is_changed = is_resized || document.stop != origin.usual_stop();
+    let usual = RenderSettings { width: size[0], height: size[1], ..origin.recipe.settings };
+    let is_changed = is_resized || document.stop != origin.usual_stop() || document.settings != usual;
     let summary = format!("{} × {}", size[0], size[1]);
-    let reset = is_changed.then_some("Reset size and samples");
-    let header = Header { title: "Size and samples", summary: &summary, reset, ..Header::default() };
+    let header = Header {
+        title: "Render",
+        summary: &summary,
+        reset: is_changed.then_some("Reset size, samples and tracer"),
+        ..Header::default()
+    };
     let is_reset = fold(ui, header, document.no_rays().is_some(), |ui| {
         sizing(ui, document, remembered, cx);
-        let usual = origin.recipe.samples_per_pixel;
-        stop(ui, &mut document.stop, usual);
+        stop(ui, &mut document.stop, origin.recipe.samples_per_pixel);
+        if document.is_random() {
+            tracer(ui, document);
+        }
     });
     if is_reset {
+        document.settings = usual;
         (document.has_own_size, document.stop) = (origin.keeps_size(), origin.usual_stop());
         if document.has_own_size {
             document.set_size(origin.size());
@@ -257,7 +258,9 @@ fn sizing(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx:
         ("As in the book", Some(Sizing::Book)),
         ("Other", None),
     ];
-    let chosen = (!document.has_own_size).then_some(remembered.sizing);
+    let is_of_origin = document.origin.keeps_size() && document.size() == document.origin.size();
+    let own = is_of_origin.then_some(Sizing::Book);
+    let chosen = if document.has_own_size { own } else { Some(remembered.sizing) };
     let shown = names.iter().find(|(_, sizing)| *sizing == chosen).map_or("", |(name, _)| name);
     ui.spacing_mut().combo_width = 136.0;
     list(ui, About::new("Size", "How many pixels are rendered"), shown, |ui| {
@@ -345,85 +348,27 @@ fn stop(ui: &mut Ui, stop: &mut Stop, usual: u64) {
     }
 }
 
-fn tracer(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered) {
-    let RenderSettings { width, height, .. } = document.settings;
-    let original = RenderSettings { width, height, ..document.origin.recipe.settings };
-    let is_changed = document.settings != original;
-    let reset = is_changed.then_some("Reset tracer");
-    let header = Header { title: "Tracer", reset, ..Header::default() };
-    let (rules, is_random) = (*document.rules(), document.is_random());
-    let is_reset = fold(ui, header, false, |ui| {
-        let settings = &mut document.settings;
-        if rules.shading == Shading::Path {
-            let help = "A path that has not ended by then brings back no light (max_depth)";
-            whole(
-                ui,
-                About::new("Rays per path, at most", help),
-                &mut settings.max_depth,
-                1..=DEPTH_LIMIT,
-                48.0,
-            );
-        }
-        random_numbers(ui, settings, (!is_random).then_some("In this stage nothing is random"));
-        threads_and_lanes(ui, remembered);
-        let help = "Traces with 16 digits (f64) instead of 7 (f32), one ray at a time: slow, but it shows rounding errors";
-        let mut is_reference = remembered.device == Device::Reference;
-        if check(ui, About::new("Reference (f64)", help), &mut is_reference).changed() {
-            remembered.device = if is_reference { Device::Reference } else { Device::Cpu };
-        }
-    });
-    if is_reset {
-        document.settings = original;
+/// How paths are traced.
+fn tracer(ui: &mut Ui, document: &mut Document) {
+    let is_path = document.rules().shading == Shading::Path;
+    let settings = &mut document.settings;
+    if is_path {
+        let help = "A path that has not ended by then brings back no light (max_depth)";
+        let about = About::new("Rays per path, at most", help);
+        whole(ui, about, &mut settings.max_depth, 1..=DEPTH_LIMIT, 48.0);
     }
-}
-
-fn random_numbers(ui: &mut Ui, settings: &mut RenderSettings, disabled_reason: Option<&str>) {
-    let about = |name, help| About::new(name, help).disabled_if(disabled_reason);
     ui.scope(|ui| {
-        above(ui, about("Random numbers", ""));
+        above(ui, About::new("Random numbers", ""));
         let even = "Even ones (Sobol) spread over the pixel and need fewer samples";
         let options = [
-            (SamplerKind::Sobol, about("Even (Sobol)", even)),
-            (SamplerKind::Independent, about("Independent", "Independent ones are those of the book")),
+            (SamplerKind::Sobol, About::new("Even (Sobol)", even)),
+            (SamplerKind::Independent, About::new("Independent", "Independent ones are those of the book")),
         ];
         let width = (ui.available_width() / 2.0).floor();
         settings.sampler = switch(ui, width, settings.sampler, &options).unwrap_or(settings.sampler);
     });
-    let help = "Another seed gives the same picture with other noise";
-    whole(ui, about("Seed", help), &mut settings.seed, 0..=u32::MAX, 112.0);
-}
-
-fn threads_and_lanes(ui: &mut Ui, remembered: &mut Remembered) {
-    let not_cpu =
-        (remembered.device == Device::Gpu).then_some("The graphics card has its own threads and lanes");
-    let scalar = (remembered.device == Device::Reference).then_some("The reference traces one ray at a time");
-    let help = "How many threads of the processor trace; automatic leaves one to the window";
-    count(
-        ui,
-        About::new("Threads", help).disabled_if(not_cpu),
-        &mut remembered.threads,
-        (1..=core_count()).collect(),
-    );
-    let help = "A lane is a place in a processor core; 16 lanes trace 16 paths side by side";
-    count(
-        ui,
-        About::new("Lanes", help).disabled_if(not_cpu.or(scalar)),
-        &mut remembered.lanes,
-        lane_counts(),
-    );
-}
-
-/// A list of counts, with automatic first.
-fn count(ui: &mut Ui, about: About<'_>, chosen: &mut Option<usize>, counts: Vec<usize>) {
-    let words =
-        |count: Option<usize>| count.map_or_else(|| "automatic".to_owned(), |count| count.to_string());
-    list(ui, about, &words(*chosen), |ui| {
-        for count in [None].into_iter().chain(counts.into_iter().map(Some)) {
-            if entry(ui, *chosen == count, About::new(&words(count), "")) {
-                *chosen = count;
-            }
-        }
-    });
+    let about = About::new("Seed", "Another seed gives the same picture with other noise");
+    whole(ui, about, &mut settings.seed, 0..=u32::MAX, 112.0);
 }
 
 #[cfg(test)]

@@ -92,7 +92,9 @@ impl Race {
             }
             None => {}
         }
-        compare::verdict(ui, cx);
+        if cx.verdict.is_some() {
+            compare::verdict(ui, cx);
+        }
     }
 }
 

@@ -29,7 +29,7 @@ fn unit(context: &Context) -> f32 {
 pub fn ui(ui: &mut Ui, cx: &PanelContext, numbers: Option<impl FnOnce(&mut Ui)>) {
     let unit = unit(ui.ctx());
     let words = status::sentence(cx);
-    let is_done = matches!(cx.status.phase, Phase::Done(_));
+    let is_done = matches!(cx.status.phase, Phase::Done(_)) && !cx.is_held;
     let share = if is_done { 1.0 } else { status::share(cx).unwrap_or(0.0) as f32 };
     bottom("present progress", 0.5 * unit, 0.0).show(ui, |ui| {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
@@ -44,7 +44,7 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext, numbers: Option<impl FnOnce(&mut Ui)>)
     let margin = MARGIN * unit;
     bottom("present keys", 4.0 * unit, margin).show(ui, |ui| {
         ui.horizontal_centered(|ui| {
-            keys(ui, unit);
+            keys(ui, unit, cx);
             let words = RichText::new(&words).size(1.75 * unit).color(theme::colours(ui).weak);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(words));
         });
@@ -60,7 +60,7 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext, numbers: Option<impl FnOnce(&mut Ui)>)
 }
 
 /// The keys of a presentation.
-fn keys(ui: &mut Ui, unit: f32) {
+fn keys(ui: &mut Ui, unit: f32, cx: &PanelContext) {
     let named = [
         (Command::NextStage, "next"),
         (Command::ShowMe, "show me"),
@@ -68,9 +68,13 @@ fn keys(ui: &mut Ui, unit: f32) {
         (Command::Blank, "blank"),
         (Command::Panels, "captions"),
     ];
+    let is_stage = cx.document().stage().is_some();
+    let is_of_use =
+        |command| cx.disabled_reason(command).is_none() && (is_stage || command != Command::NextStage);
+    let named = named.into_iter().filter(|(command, _)| is_of_use(*command));
     let key = |command: Command| command.keys(ui.ctx()).unwrap_or_default();
-    let keys = named.map(|(command, what)| format!("{} {what}", key(command)));
-    let text = format!("{}    Escape ends", keys.join("    "));
+    let keys = named.map(|(command, what)| format!("{} {what}    ", key(command)));
+    let text = format!("{}Escape ends", keys.collect::<String>());
     ui.label(RichText::new(text).size(1.75 * unit).color(theme::colours(ui).weak));
 }
 
@@ -160,6 +164,7 @@ fn columns(ui: &mut Ui, unit: f32, texts: [(&str, &str); 2], mut numbers: Option
                     let most = (rows - 28.0) / (5.0 * 4.0 / 3.0);
                     let small = ui.style_mut().text_styles.get_mut(&TextStyle::Small);
                     small.into_iter().for_each(|font| font.size = font.size.min(most));
+                    ui.set_max_width(width.min(28.0 * TextStyle::Small.resolve(ui.style()).size));
                     return numbers(ui);
                 }
                 ui.label(RichText::new(name).size(heading).color(theme::colours(ui).accent));

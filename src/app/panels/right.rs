@@ -9,15 +9,6 @@ use eframe::egui::{CentralPanel, Frame, Margin, Panel, Rangef, ScrollArea, Ui};
 const PICTURE: f32 = 240.0;
 
 impl Tab {
-    fn name(self) -> &'static str {
-        match self {
-            Tab::Stage => "Stage",
-            Tab::Code => "Code",
-            Tab::Check => "Check",
-            Tab::Controls => "Controls",
-        }
-    }
-
     fn width(self) -> f32 {
         match self {
             Tab::Stage | Tab::Controls => 272.0,

@@ -24,7 +24,7 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
         ui.add_space(8.0);
         let what = if document.stage().is_some() { "stage" } else { "picture" };
         hint(ui, &format!("You changed this {what}."));
-        command_button(ui, cx, Command::ResetAll, "Reset all");
+        command_button(ui, cx, Command::ResetAll, &Command::ResetAll.name());
     }
 }
 
@@ -46,12 +46,12 @@ pub fn paragraph(ui: &mut Ui, heading: &str, text: &str) {
 fn stage_ui(ui: &mut Ui, stage: &Stage, cx: &PanelContext) {
     title(ui, &format!("{} {}", stage.section, stage.section_title()), stage.title);
     add_command(ui, cx, Command::Book, Link::new(format!("{} in the book", stage.section)));
+    show_me(ui, stage, cx);
     for (heading, text) in
-        [("What is new", stage.what_is_new), ("Why", stage.why), ("Look for", stage.look_for)]
+        [("What is new", stage.what_is_new), ("Look for", stage.look_for), ("Why", stage.why)]
     {
         paragraph(ui, heading, text);
     }
-    show_me(ui, stage, cx);
 }
 
 /// A button that shows what to look for, and then says what is seen.

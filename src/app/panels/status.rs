@@ -116,7 +116,9 @@ pub fn sentence(snapshot: &Snapshot) -> String {
             let [rmse, deviation] = [error.rmse(), error.rmse_deviation()].map(|error| 100.0 * error);
             let places = places(deviation, 1);
             let [rmse, deviation] = [rmse, deviation].map(|percent| to_places(percent, places));
-            format!(", denoised: error {rmse} ± {deviation} (raw {raw})")
+            let of = view.denoised_of(status.run).map_or(count, |denoised| denoised.film.sample_count());
+            let of = if of == count { String::new() } else { format!(" at {}", grouped(of)) };
+            format!(", denoised{of}: error {rmse} ± {deviation} (raw {raw})")
         }
         (Some(raw), Some(Err(reason))) => format!(", error {raw} (not denoised: {reason})"),
         (Some(raw), None) => format!(", error {raw}"),
@@ -132,7 +134,7 @@ pub fn sentence(snapshot: &Snapshot) -> String {
         _ if (snapshot.is_coarse || count == 0) && snapshot.has_picture => "Refining".to_owned(),
         _ if snapshot.is_coarse || count == 0 => "Starting".to_owned(),
         _ if snapshot.model.is_paused && snapshot.is_held => {
-            format!("Paused; the picture has moved and has {samples}")
+            format!("Paused after a first look: {samples}")
         }
         _ if snapshot.model.is_paused => format!("Paused at {samples}{error}"),
         Phase::Done(_) if !snapshot.document().is_random() => {
@@ -326,7 +328,7 @@ mod tests {
         assert_eq!(sentence(&snapshot), "A coarse picture while you move");
         snapshot.is_coarse = false;
         (snapshot.model.is_paused, snapshot.is_held) = (true, true);
-        assert_eq!(sentence(&snapshot), "Paused; the picture has moved and has 100 samples per pixel");
+        assert_eq!(sentence(&snapshot), "Paused after a first look: 100 samples per pixel");
         (snapshot.model.is_paused, snapshot.is_held) = (false, false);
         snapshot.status = Arc::new(Status { phase: Phase::Done(EndReason::NoiseTarget), ..status });
         assert!(

@@ -63,7 +63,7 @@ colours! {
     /// Data: the GPU.
     second 0xEB9438 0xD9791A
     /// Data: expected.
-    third 0xB4B4BE 0x8C8C98
+    third 0xB48CE0 0x8A55C0
     /// Data: both.
     fourth 0x46C396 0x1F9A6B
 }

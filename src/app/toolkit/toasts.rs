@@ -107,6 +107,17 @@ impl Toasts {
         self.0.retain(|toast| toast.subject() != Some(subject));
     }
 
+    /// Removes errors about what the user asked for.
+    pub fn end_refusals(&mut self) {
+        self.0.retain(|toast| !toast.subject().is_some_and(|subject| subject.starts_with("Not ")));
+    }
+
+    /// Closes the newest message that stays. Returns whether there was one.
+    pub fn close_newest(&mut self) -> bool {
+        let newest = self.0.iter().rposition(|toast| toast.stays);
+        newest.map(|newest| self.0.remove(newest)).is_some()
+    }
+
     /// Removes offers to undo or redo once the document has changed again.
     pub fn follow(&mut self, document: &Document) {
         self.0.retain_mut(|toast| {
@@ -224,5 +235,11 @@ mod tests {
         toasts.end_error("Not saved");
         toasts.withdraw(Command::StopSaving);
         assert_eq!(texts(&toasts), ["Not opened: c", "last"]);
+        assert!(toasts.close_newest() && !toasts.close_newest(), "errors and offers");
+        assert_eq!(texts(&toasts), ["last"]);
+        toasts.bad("Not opened: a");
+        toasts.bad("Film not kept: b");
+        toasts.end_refusals();
+        assert_eq!(texts(&toasts), ["last", "Film not kept: b"]);
     }
 }

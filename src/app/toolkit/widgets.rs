@@ -434,27 +434,17 @@ impl<'a> Number<'a> {
 pub fn vector(ui: &mut Ui, about: About<'_>, value: &mut DVec3, limits: RangeInclusive<f64>, speed: f64) {
     ui.scope(|ui| {
         above(ui, about);
-        fields(ui, about, [["x ", "x"], ["y ", "y"], ["z ", "z"]], value, (limits, speed));
-    });
-}
-
-/// Three fields side by side.
-fn fields(
-    ui: &mut Ui,
-    about: About<'_>,
-    names: [[&str; 2]; 3],
-    value: &mut DVec3,
-    (limits, speed): (RangeInclusive<f64>, f64),
-) {
-    ui.horizontal(|ui| {
-        let width = ((ui.available_width() - 16.0) / 3.0).floor();
-        let scale = value.abs().max_element();
-        for (component, [letter, name]) in names.into_iter().enumerate() {
-            let name = format!("{}, {name}", about.name);
-            let about = About { name: &name, ..about };
-            let number = Number { scale, ..Number::new(about, limits.clone()).speed(speed).letter(letter) };
-            number.field(ui, width, &mut value[component]);
-        }
+        ui.horizontal(|ui| {
+            let width = ((ui.available_width() - 16.0) / 3.0).floor();
+            let scale = value.abs().max_element();
+            for (component, letter) in ["x ", "y ", "z "].into_iter().enumerate() {
+                let name = format!("{}, {}", about.name, letter.trim());
+                let about = About { name: &name, ..about };
+                let number =
+                    Number { scale, ..Number::new(about, limits.clone()).speed(speed).letter(letter) };
+                number.field(ui, width, &mut value[component]);
+            }
+        });
     });
 }
 
@@ -463,7 +453,7 @@ pub fn shown_albedo(albedo: DVec3) -> [u8; 3] {
     albedo.to_array().map(|n| (255.0 * n.clamp(0.0, 1.0).sqrt()).round() as u8)
 }
 
-/// A colour to pick, or to type as shares of light.
+/// A colour to pick.
 pub fn colour(ui: &mut Ui, about: About<'_>, albedo: &mut DVec3) {
     let shown = shown_albedo(*albedo);
     row(ui, about, |ui| {
@@ -477,7 +467,6 @@ pub fn colour(ui: &mut Ui, about: About<'_>, albedo: &mut DVec3) {
             albedo[component] = (light * 1e4).round() / 1e4;
         }
     });
-    fields(ui, about, [["R ", "red"], ["G ", "green"], ["B ", "blue"]], albedo, (0.0..=1.0, 0.005));
 }
 
 /// Formats a number in few characters.
@@ -607,6 +596,7 @@ pub fn tab(ui: &mut Ui, name: &str, is_on: bool) -> Response {
         ui.spacing_mut().button_padding.x = 0.0;
         let response = ui.add(Button::new(text).frame(false).min_size(vec2(0.0, TABS)));
         response.widget_info(|| WidgetInfo::selected(Role::Tab, true, is_on, name));
+        take_focus(&response, name);
         if is_on {
             let line = response.rect.x_range().expand(8.0);
             ui.painter().hline(line, response.rect.bottom() - 1.0, Stroke::new(2.0, colours.accent));

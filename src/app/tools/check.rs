@@ -10,7 +10,7 @@ use crate::app::toolkit::widgets::{
 };
 use crate::app::toolkit::{Answers, caught, theme};
 use crate::comparison::check::{Answer, AnswerKind, Damage, Finding, Mine, POLL_INTERVAL, Watched, judge};
-use crate::stages::Stage;
+use crate::stages::{Stage, Transfer};
 use eframe::egui::text::LayoutJob;
 use eframe::egui::{self, Align, FontSelection, Label, RichText, Ui};
 use std::path::{Path, PathBuf};
@@ -41,6 +41,11 @@ impl Checked {
     }
 }
 
+enum News {
+    Read(Arc<Kept>),
+    Judged(Checked),
+}
+
 /// The check of a picture, which a background thread repeats whenever the file has changed.
 #[derive(Default)]
 pub struct Check {
@@ -51,13 +56,17 @@ pub struct Check {
     /// What is being tried; `None` between two checks.
     trying: Arc<Mutex<Option<String>>>,
     pub shown: Option<Checked>,
+    /// The picture of the file as it is now.
+    pub mine: Option<Arc<Kept>>,
+    /// The finding is about an earlier state of the file.
+    is_old: bool,
     /// The user has begun a check.
     has_news: bool,
     /// The picture of the last window was looked for.
     has_resumed: bool,
     /// The number of the place that is shown enlarged.
     pub place: Option<usize>,
-    answers: Answers<Checked>,
+    answers: Answers<News>,
     /// Ends the check that is under way.
     stop: Arc<AtomicBool>,
 }
@@ -76,22 +85,22 @@ impl Check {
             window.request_repaint();
         };
         let watch = move || {
-            let outcome = caught(|| {
-                while answer.is_wanted() {
+            while answer.is_wanted() {
+                let found = caught(|| {
                     let found = watched.judged(|mine| {
                         say(Some("the right picture".to_owned()));
+                        let transfer = stage.map_or(Transfer::Gamma2, |stage| stage.recipe().rules.transfer);
+                        let read = Kept::of_mine(name.clone(), mine, transfer);
+                        read.into_iter().for_each(|read| answer.give(Ok(News::Read(Arc::new(read)))));
                         judge(mine, stage, &stop, |what| say(Some(what)))
                     });
-                    if let Some(found) = found {
-                        say(None);
-                        answer.give(Ok(Checked::of(found, name.clone())));
-                    }
-                    sleep(POLL_INTERVAL);
+                    found.map(|found| Checked::of(found, name.clone()))
+                });
+                if let Some(found) = found.transpose() {
+                    say(None);
+                    answer.give(found.map(News::Judged));
                 }
-            });
-            if let Err(reason) = outcome {
-                say(None);
-                answer.give(Err(reason));
+                sleep(POLL_INTERVAL);
             }
         };
         // Without a thread, the answer is dropped, which gives an error.
@@ -112,9 +121,16 @@ impl Check {
         let mut is_answered = false;
         while let Some(outcome) = self.answers.take() {
             is_answered = true;
-            let checked =
-                outcome.unwrap_or_else(|reason| Checked::of(Err(anyhow::Error::msg(reason)), self.name()));
-            let is_first = self.shown.is_none();
+            let checked = match outcome {
+                Ok(News::Read(mine)) => {
+                    (self.mine, self.is_old) = (Some(mine), true);
+                    continue;
+                }
+                Ok(News::Judged(checked)) => checked,
+                Err(reason) => Checked::of(Err(anyhow::Error::msg(reason)), self.name()),
+            };
+            (self.mine, self.is_old) = (checked.compared.as_ref().map(|(_, mine)| Arc::clone(mine)), false);
+            let is_first = self.found().is_none();
             if let Some(path) = self.path.as_ref().filter(|_| is_first && checked.compared.is_some()) {
                 remembered.note_recent(path);
             }
@@ -194,6 +210,9 @@ impl Check {
         scrolling(ui, |ui| {
             self.progress(ui);
             if let Some(shown) = &self.shown {
+                if self.is_old {
+                    ui.multiply_opacity(0.45);
+                }
                 of_section = shown.ui(ui, cx, self.chosen, self.place);
                 hint(ui, &format!("{} is checked again whenever it changes.", self.name()));
             }

@@ -41,12 +41,12 @@ pub fn ui(ui: &mut Ui, model: &mut Model, tools: &mut Tools, cx: &PanelContext) 
 
 fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, cx: &PanelContext) {
     let shown = &mut model.remembered.dock;
-    let tabs = [(Dock::Path, "Path", Command::ClearPaths), (Dock::Error, "Error", Command::ErrorDock)];
+    let tabs = [(Dock::Path, Command::ClearPaths), (Dock::Error, Command::ErrorDock)];
     let left = |ui: &mut Ui| {
         ui.spacing_mut().item_spacing.x = 16.0;
-        for (of, name, command) in tabs {
+        for (of, command) in tabs {
             if of != Dock::Path || dock == of || cx.has_paths {
-                let response = tab(ui, name, dock == of);
+                let response = tab(ui, of.name(), dock == of);
                 if tip(ui, response, command.help(), None).clicked() {
                     *shown = Some(of);
                 }
@@ -56,7 +56,7 @@ fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, cx: &PanelContext) {
     let right = |ui: &mut Ui| {
         let close = sign_button(ui, "×", 24.0, "Close dock");
         if tip(ui, close, "Closes the dock (Escape)", None).clicked() {
-            tabs.iter().filter(|(of, ..)| *of == dock).for_each(|(.., command)| cx.send(*command));
+            tabs.iter().filter(|(of, _)| *of == dock).for_each(|(_, command)| cx.send(*command));
         }
     };
     Sides::new().height(TABS).shrink_left().show(ui, left, right);

@@ -2,6 +2,7 @@
 //! from one to the other.
 
 use crate::app::commands::Snapshot;
+use crate::app::model::spheres::MANY;
 use crate::app::model::{Document, Mode, Partner, ViewState, at_other, kind_word};
 use crate::app::toolkit::widgets::{compact, hint, tip};
 use crate::app::toolkit::{Query, theme};
@@ -12,9 +13,6 @@ use crate::film::{Film, to_byte};
 use crate::scene::Scene;
 use crate::stages::Transfer;
 use eframe::egui::{self, Align, Color32, Layout, Rect, RichText, Sense, TextStyle, Ui, UiBuilder, vec2};
-
-/// With more spheres than this, searching for the one under the pointer would stall the window.
-const PICK_LIMIT: usize = 50_000;
 
 /// Height of a row and distance of the columns of numbers, sizes of the font.
 const ROW: f32 = 4.0 / 3.0;
@@ -55,28 +53,24 @@ pub struct Readout {
     pub compared: Option<[Pixel; 2]>,
 }
 
-/// Column and row.
-type At = [u32; 2];
+/// Column and row, of a picture of this run: that of the traced one, or a partner and its run.
+type Of<Run> = ([u32; 2], Run);
 
 /// The pixel under the pointer and what is known about it.
 #[derive(Default)]
 pub struct Inspector {
     pub hovered: Option<[u32; 2]>,
-    /// The pointer is over the other picture.
-    is_over_other: bool,
     /// By pixel, film and number of samples.
-    mine: Query<(At, PictureId, u64), (At, Pixel)>,
+    mine: Query<([u32; 2], PictureId, u64), (Of<u64>, Pixel)>,
     /// None where the other picture has no pixel.
-    theirs: Query<(At, OtherId), (At, Option<Pixel>)>,
+    theirs: Query<([u32; 2], OtherId), (Of<(Partner, u64)>, Option<Pixel>)>,
     readout: Option<Readout>,
 }
 
 impl Inspector {
-    /// Notes the pixel under the pointer, and whether another picture lies over it.
-    pub fn hover(&mut self, pixel: Option<[u32; 2]>, is_over_other: bool) {
-        if pixel.is_some() {
-            (self.hovered, self.is_over_other) = (pixel, is_over_other);
-        }
+    /// Notes the pixel under the pointer.
+    pub fn hover(&mut self, pixel: Option<[u32; 2]>) {
+        self.hovered = pixel.or(self.hovered);
     }
 
     /// What is known about the pixel.
@@ -86,7 +80,7 @@ impl Inspector {
 
     /// Forgets the pixel, because the picture has changed.
     pub fn forget(&mut self) {
-        *self = Inspector { hovered: self.hovered, ..Inspector::default() };
+        *self = Inspector::default();
     }
 
     /// Takes the films' answers and queries them again if there may be news. If a film is gone or has no samples, the last
@@ -100,43 +94,42 @@ impl Inspector {
     ) {
         self.mine.follow();
         self.theirs.follow();
-        self.join(other.is_some(), view);
         let Some(at) = self.hovered else { return };
         let (document, main) = (subject.document, &subject.tracing.main);
-        let size = document.size();
+        let (size, run) = (document.size(), main.status().run);
+        self.join((at, run), other.map(|other| (at, (other.id().0, other.id().1))), view, size);
         if let Some(other) = other
             && let Some(answer) = self.theirs.ask(context, (at, other.id()))
         {
-            let transfer = other.transfer();
+            let (transfer, id) = (other.transfer(), other.id());
             other.inspect(move |film| {
                 let there = at_other(at, size, [film.width(), film.height()]);
-                answer.give(Ok((at, there.and_then(|there| Pixel::of(film, there, transfer)))));
+                let pixel = there.and_then(|there| Pixel::of(film, there, transfer));
+                answer.give(Ok(((at, (id.0, id.1)), pixel)));
             });
         }
         if main.is_full(document) {
             let (key, transfer) = ((at, subject.id(), main.shown_samples()), document.rules().transfer);
-            let look = move |film: &Film| Some((at, Pixel::of(film, at, transfer)?));
+            let look = move |film: &Film| Some(((at, run), Pixel::of(film, at, transfer)?));
             subject.ask(context, &mut self.mine, key, look);
         }
     }
 
-    /// Joins the answers about one place.
-    fn join(&mut self, has_other: bool, view: &ViewState) {
-        let (mine, theirs) = (self.mine.answer.as_ref(), self.theirs.answer.as_ref());
-        let is_hidden = view.is_hidden();
-        let found = match (has_other, mine, theirs) {
-            (false, Some((_, pixel)), _) => Some((Some(pixel), false, None)),
-            (true, _, Some((_, pixel))) if is_hidden => Some((pixel.as_ref(), true, None)),
-            (true, Some((at, mine)), Some((there, theirs))) if at == there => {
+    /// Joins the answers about one place of these pictures. The last known ones stay until both are there.
+    fn join(&mut self, of: Of<u64>, of_other: Option<Of<(Partner, u64)>>, view: &ViewState, size: [u32; 2]) {
+        let mine = self.mine.answer.as_ref().filter(|(about, _)| *about == of);
+        let theirs = self.theirs.answer.as_ref().filter(|(about, _)| Some(*about) == of_other);
+        let is_other = of_other.is_some() && view.is_other((f64::from(of.0[0]) + 0.5) / f64::from(size[0]));
+        let (pixel, compared) = match (mine, theirs) {
+            (Some((_, mine)), None) if of_other.is_none() => (Some(mine.clone()), None),
+            (_, Some((_, theirs))) if is_other && mine.is_none() => (theirs.clone(), None),
+            (Some((_, mine)), Some((_, theirs))) => {
                 let compared = theirs.clone().map(|theirs| [theirs, mine.clone()]);
-                let is_other = self.is_over_other && view.mode() == Some(Mode::Wipe);
-                Some((if is_other { theirs.as_ref() } else { Some(mine) }, is_other, compared))
+                (if is_other { theirs.clone() } else { Some(mine.clone()) }, compared)
             }
-            _ => None,
+            _ => return,
         };
-        if let Some((pixel, is_other, compared)) = found {
-            self.readout = pixel.cloned().map(|pixel| Readout { pixel, is_other, compared });
-        }
+        self.readout = pixel.map(|pixel| Readout { pixel, is_other, compared });
     }
 
     /// Draws the numbers; `other` is the document of the other picture, and `layer` the displayed layer and its value.
@@ -147,9 +140,9 @@ impl Inspector {
         other: Option<&Document>,
         layer: Option<(Layer, [f64; 3])>,
     ) {
-        // The header and four rows, so that what is above stays where it is.
+        // The header and five rows, so that what is above stays where it is.
         ui.spacing_mut().item_spacing.y = 0.0;
-        ui.set_min_height(24.0 + 4.0 * ROW * TextStyle::Small.resolve(ui.style()).size);
+        ui.set_min_height(24.0 + 5.0 * ROW * TextStyle::Small.resolve(ui.style()).size);
         let Some(readout) = &self.readout else {
             ui.horizontal(|ui| ui.label(RichText::new("Pixel").strong()));
             hint(ui, "Point at the picture to read its numbers.");
@@ -207,29 +200,28 @@ fn rows<'a>(
     let mut rows: Vec<Row<'a>> = Vec::new();
     match compared {
         Some([theirs, mine]) => {
-            let is_wipe = mode == Some(Mode::Wipe);
+            let is_of_one = mode != Some(Mode::Difference);
             let what = if in_bytes { "The bytes of the picture, 0 to 255" } else { light };
             let values = |pixel: &Pixel| match in_bytes {
                 true => pixel.bytes.map(|byte| byte.to_string()),
                 false => pixel.mean.map(decimals),
             };
             for (name, pixel, is_it) in [(names[0], theirs, *is_other), (names[1], mine, !is_other)] {
-                rows.push((name, format!("{name}. {what}"), values(pixel), is_wipe && is_it));
+                rows.push((name, format!("{name}. {what}"), values(pixel), is_of_one && is_it));
             }
             let change = [0, 1, 2].map(|i| match in_bytes {
                 true => signed(f64::from(mine.bytes[i]) - f64::from(theirs.bytes[i]), 0),
                 false => signed(mine.mean[i] - theirs.mean[i], 4),
             });
             let help = format!("How much brighter {} is than {}", names[1], names[0]);
-            rows.push(("change", help, change, !is_wipe));
+            rows.push(("change", help, change, !is_of_one));
         }
         None => rows.push(("light", light.to_owned(), pixel.mean.map(decimals), true)),
     }
-    if mode != Some(Mode::Difference) && !in_bytes {
-        let of =
-            compared.as_ref().map_or_else(String::new, |_| format!(" of {}", names[usize::from(!is_other)]));
-        let help = format!("The byte that a file{of} gets, 0 to 255");
-        rows.push(("saved as", help, pixel.bytes.map(|byte| byte.to_string()), true));
+    if mode != Some(Mode::Difference) && !in_bytes && (compared.is_some() || !is_other) {
+        let mine = compared.as_ref().map_or(pixel, |[_, mine]| mine);
+        let help = "The byte that a file of the traced picture gets, 0 to 255".to_owned();
+        rows.push(("saved as", help, mine.bytes.map(|byte| byte.to_string()), !is_other));
     }
     rows.extend(layer.map(|(layer, value)| match layer {
         Layer::Normals => {
@@ -258,7 +250,7 @@ fn table(ui: &mut Ui, rows: &[Row<'_>]) {
 /// The name of the surface at a pixel, and how far away it is.
 fn surface(document: &Document, [x, y]: [u32; 2]) -> Option<(String, String)> {
     let scene = document.scene();
-    if scene.spheres.len() > PICK_LIMIT || document.no_rays().is_some() {
+    if scene.spheres.len() > MANY || document.no_rays().is_some() {
         return None;
     }
     let [width, height] = document.size();
@@ -315,14 +307,14 @@ mod tests {
             is_other,
             compared: Some(compared.clone()),
         };
-        for (is_other, saved) in [(true, "1"), (false, "2")] {
+        for is_other in [true, false] {
             let mode = Some(Mode::Wipe);
             let of = Compared { names: ["11.2", "11.4"], mode, in_bytes: false };
             let found = rows(&readout(is_other), &of, None);
             let names: Vec<&str> = found.iter().map(|row| row.0).collect();
             assert_eq!(names, ["11.2", "11.4", "change", "saved as"]);
             assert_eq!(found[2].2, ["+0.2500", "−0.2500", "+0.0000"]);
-            assert_eq!(found[3].2, [saved; 3]);
+            assert_eq!(found[3].2, ["2"; 3], "what Save saves");
             assert_eq!([found[0].3, found[1].3], [is_other, !is_other], "the one under the pointer");
             let of = Compared { in_bytes: true, ..of };
             let found = rows(&readout(is_other), &of, None);

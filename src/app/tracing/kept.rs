@@ -5,7 +5,7 @@ use super::Tracing;
 use super::second::{Other, OtherId};
 use super::tracer::Tracer;
 use crate::app::commands::Verdict;
-use crate::app::model::{Kept, Model};
+use crate::app::model::{Kept, Model, Partner, Wish};
 use crate::app::toolkit::{Answers, Query};
 use crate::comparison::{Picture, compare};
 use crate::film::Film;
@@ -24,10 +24,10 @@ pub struct KeptActions {
     pub copied: Answers<Kept>,
     /// Pictures of files, to compare with.
     pub files: Answers<Kept>,
-    /// The picture is to be kept as soon as it has samples.
-    pub is_wanted: bool,
-    /// The two pictures are to be compared as soon as both have samples.
-    pub is_asked: bool,
+    /// The picture is to be kept.
+    pub wanted: Wish<()>,
+    /// The picture is to be tested against this partner.
+    pub asked: Wish<Partner>,
 }
 
 impl KeptActions {
@@ -36,7 +36,19 @@ impl KeptActions {
     pub fn follow(&mut self, context: &Context, model: &Model, tracing: &Tracing) {
         self.verdict.follow();
         let document = &model.document;
-        if !tracing.main.has_samples(document) {
+        let has_samples = tracing.main.has_samples(document);
+        if let Some(Ok(())) = self.wanted.take(document, has_samples) {
+            let (document, answer) = (document.clone(), self.copied.promise(context));
+            tracing.main.inspect(move |film| {
+                let copy = film.try_copy().map_err(|error| error.to_string());
+                answer.give_from("keep", move || copy.map(|film| Kept::new(document, film)));
+            });
+        }
+        if model.view.mode().is_none() || self.asked.open().is_some_and(|asked| *asked != model.view.partner)
+        {
+            self.asked = Wish::default();
+        }
+        if !has_samples {
             return;
         }
         if let Some(other) = tracing.other(model).filter(Other::is_ready) {
@@ -48,16 +60,10 @@ impl KeptActions {
                     && is_over(&tracing.main)
                     && (samples(tracer) == samples(&tracing.main) || document.stop.seconds.is_some()));
             let sides = sides(&other, tracing);
-            if std::mem::take(&mut self.is_asked) || is_due && self.verdict.asked != Some(sides) {
+            let is_asked = matches!(self.asked.take(document, true), Some(Ok(_)));
+            if is_asked || is_due && self.verdict.asked != Some(sides) {
                 self.ask(context, model, tracing, sides);
             }
-        }
-        if std::mem::take(&mut self.is_wanted) {
-            let (document, answer) = (document.clone(), self.copied.promise(context));
-            tracing.main.inspect(move |film| {
-                let copy = film.try_copy().map_err(|error| error.to_string());
-                answer.give_from("keep", move || copy.map(|film| Kept::new(document, film)));
-            });
         }
     }
 
@@ -73,7 +79,9 @@ impl KeptActions {
         let Some(other) = tracing.other(model) else { return };
         let Some(answer) = self.verdict.ask(context, sides) else { return };
         let (sender, other_film) = channel();
-        let (theirs, is_rounded) = (other.document().map(|document| document.recipe()), other.id().0);
+        let theirs = other.document().map(|document| document.recipe());
+        let has_same_samples = other.id().0.has_same_samples()
+            || other.document().is_some_and(|other| other.has_same_film(&model.document));
         let of_file = match other {
             Other::Kept(kept) => kept.picture.clone(),
             Other::Traced(..) => None,
@@ -85,7 +93,7 @@ impl KeptActions {
                 let other_film = other_film.recv().map_err(|_| "it has no picture yet".to_owned())?;
                 let other_film = other_film.map_err(|error| error.to_string())?;
                 let theirs = of_file.map_or_else(|| picture("other", theirs, other_film), Ok)?;
-                compared(&[theirs, picture("traced", Some(mine), film)?], is_rounded.has_same_samples())
+                compared(&[theirs, picture("traced", Some(mine), film)?], has_same_samples)
             }),
             Err(error) => answer.give(Err(error.to_string())),
         });

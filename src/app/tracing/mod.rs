@@ -84,14 +84,14 @@ impl Tracing {
     /// The status of the render of the other picture, if it has one of its own.
     pub fn other_status(&self, model: &Model) -> Option<Arc<Status>> {
         match self.other(model)? {
-            Other::Traced(partner, tracer, _) if partner != Partner::Raw => Some(Arc::clone(tracer.status())),
-            _ => None,
+            Other::Traced(_, tracer, _) => Some(Arc::clone(tracer.status())),
+            Other::Kept(_) => None,
         }
     }
 
     /// The other picture of a comparison, once it has samples.
     pub fn other<'a>(&'a self, model: &'a Model) -> Option<Other<'a>> {
-        self.second.other(model, &self.main)
+        self.second.other(model)
     }
 
     /// The films to keep of the pictures that were left since the last call.
@@ -134,12 +134,12 @@ impl Tracing {
             document,
             backend: &model.backend(),
             stop,
-            view: view.of_film(run, self.second.means(model)),
+            view: view.of_film(run, self.second.means(model, document.size())),
             is_moving: changes.is_moving(),
             is_paused: *is_paused,
         };
         self.invalid = self.main.want(&want, self.film.take()).err();
-        let is_there = self.second.follow(context, model, &want, &self.main);
+        let is_there = self.second.follow(context, model, &want);
         self.take_turns(context, model.other_device().is_some(), *is_paused);
         is_there
     }
@@ -161,10 +161,15 @@ impl Tracing {
             return;
         }
         for (place, tracer) in tracers.into_iter().enumerate() {
-            let has_turn = turn.is_second == (place == 1) || is_over(tracers[1 - place]);
+            let other = tracers[1 - place];
+            let has_turn = turn.is_second == (place == 1) || is_over(other);
             match tracer.status().phase {
                 Phase::Tracing if !has_turn => tracer.progressive.pause(),
-                Phase::Paused if has_turn => tracer.progressive.resume(),
+                // Not before the pass of the other one has ended.
+                Phase::Paused if has_turn && other.status().phase != Phase::Tracing => {
+                    tracer.progressive.resume();
+                    turn.since = Instant::now();
+                }
                 _ => {}
             }
         }

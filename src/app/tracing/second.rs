@@ -1,10 +1,10 @@
-//! The other picture of a comparison: one that is traced beside this one, a kept one, or this one without denoising.
+//! The other picture of a comparison: one that is traced beside this one, or a kept one.
 
 use super::tracer::{Tracer, Want};
 use crate::app::model::{CheckedScene, Document, Kept, Mode, Model, Origin, Partner};
 use crate::app::toolkit::{Query, Texture};
 use crate::film::Film;
-use crate::progressive::{ReferenceMeans, View};
+use crate::progressive::{Phase, ReferenceMeans, View};
 use crate::stages::Transfer;
 use eframe::egui::Context;
 use std::sync::Arc;
@@ -86,35 +86,36 @@ pub struct Second {
 }
 
 impl Second {
-    /// The other picture, once it has samples; `main` traces this one.
-    pub fn other<'a>(&'a self, model: &'a Model, main: &'a Tracer) -> Option<Other<'a>> {
-        other(self.tracer.as_ref(), self.of.as_ref(), model, main)
+    /// The other picture, once it has samples.
+    pub fn other<'a>(&'a self, model: &'a Model) -> Option<Other<'a>> {
+        other(self.tracer.as_ref(), self.of.as_ref(), model)
     }
 
     /// The other picture as it is drawn, and whether it is a preview.
-    pub fn texture(&self, other: &Other<'_>) -> Option<(&Texture, bool)> {
+    pub fn texture<'a>(&'a self, other: &Other<'a>) -> Option<(&'a Texture, bool)> {
         match other {
-            Other::Traced(partner, ..) if *partner != Partner::Raw => {
-                let shown = self.tracer.as_ref()?.shown()?;
-                Some((&shown.texture, shown.divisor > 1))
-            }
-            _ => {
-                let (partner, run, _) = other.id();
-                let found = self.resolved.as_ref().filter(|(id, ..)| (id.0, id.1) == (partner, run));
+            Other::Traced(_, tracer, _) => tracer.shown().map(|shown| (&shown.texture, shown.divisor > 1)),
+            Other::Kept(_) => {
+                let found = self.resolved.as_ref().filter(|(id, ..)| id.0 == other.id().0);
                 found.map(|(.., texture)| (texture, false))
             }
         }
     }
 
-    /// The light of the other film, if it is known.
-    pub fn means<'a>(&'a self, model: &'a Model) -> Option<&'a Arc<ReferenceMeans>> {
-        let partner = model.view.compared(&model.document)?;
-        let known = self.means.answer.as_ref().filter(|(id, _)| id.0 == partner).map(|(_, means)| means);
-        model.view.kept_partner().map(|kept| &kept.means).or(known)
+    /// The light of the other film, if it is known and of this size.
+    pub fn means<'a>(&'a self, model: &'a Model, size: [u32; 2]) -> Option<&'a Arc<ReferenceMeans>> {
+        let means = match self.other(model)? {
+            Other::Kept(kept) => &kept.means,
+            other => {
+                let ((of, means), id) = (self.means.answer.as_ref()?, other.id());
+                Some(means).filter(|_| (of.0, of.1) == (id.0, id.1))?
+            }
+        };
+        Some(means).filter(|means| [means.width, means.height] == size)
     }
 
-    /// Makes the other picture, if one is needed; `want` is what `main` renders. Returns whether there is one.
-    pub fn follow(&mut self, context: &Context, model: &Model, want: &Want<'_>, main: &Tracer) -> bool {
+    /// Makes the other picture, if one is needed; `want` is this one. Returns whether there is one.
+    pub fn follow(&mut self, context: &Context, model: &Model, want: &Want<'_>) -> bool {
         let partner = model.view.compared(want.document);
         let is_there = self.trace(context, partner, model, want);
         self.means.follow();
@@ -124,10 +125,9 @@ impl Second {
             let earlier = self.resolved.take().map(|(.., texture)| texture);
             self.resolved = Some((id, view, Texture::new(size, &rgb8, earlier)));
         }
-        if let Some(other) = other(self.tracer.as_ref(), self.of.as_ref(), model, main) {
+        if let Some(other) = other(self.tracer.as_ref(), self.of.as_ref(), model) {
             let (id, view) = (other.id(), model.view.tone.of_picture());
             let is_kept = matches!(other, Other::Kept(_));
-            let is_traced = !is_kept && id.0 != Partner::Raw;
             let is_known = |(of, in_view, _): &Resolved| *of == id && in_view.is_same(&view);
             if model.view.mode() == Some(Mode::Difference)
                 && other.is_ready()
@@ -136,7 +136,7 @@ impl Second {
             {
                 other.inspect(move |film| answer.give(Ok((id, Arc::new(ReferenceMeans::of(film))))));
             }
-            if !is_traced
+            if is_kept
                 && !self.resolved.as_ref().is_some_and(is_known)
                 && let Some(answer) = self.resolving.ask(context, (id, view.clone()))
             {
@@ -155,9 +155,8 @@ impl Second {
         let Some((partner, origin)) =
             partner.and_then(|partner| Some((partner, self.origin_of(partner, want.document)?)))
         else {
-            self.tracer.iter_mut().for_each(Tracer::abandon);
-            self.of = None;
-            return partner == Some(Partner::Raw) || model.view.kept_partner().is_some();
+            self.rest(want.document);
+            return model.view.kept_partner().is_some();
         };
         if self.tracer.is_none() {
             // Without a thread there is no second picture, but everything else works.
@@ -166,6 +165,11 @@ impl Second {
         }
         let Some(tracer) = &mut self.tracer else { return false };
         tracer.poll(context);
+        // Two devices take turns.
+        if !want.is_paused && !matches!(partner, Partner::Device(_)) && tracer.status().phase == Phase::Paused
+        {
+            tracer.progressive.resume();
+        }
         let document = partner.document(&origin, want.document);
         let own_backend;
         let backend = match partner {
@@ -179,6 +183,20 @@ impl Second {
         let stop = if partner.has_same_samples() { want.stop } else { document.stop };
         let view = model.view.tone.of_picture();
         tracer.want(&Want { document: &document, backend, stop, view, ..*want }, None).is_ok()
+    }
+
+    /// Keeps the film for the next comparison of the same picture.
+    fn rest(&mut self, mine: &Document) {
+        let is_of = |(_, origin, scene, _): &Of| {
+            Arc::ptr_eq(origin, &mine.origin) && Arc::ptr_eq(scene, &mine.checked)
+        };
+        if !self.of.as_ref().is_some_and(is_of) {
+            self.tracer.iter_mut().for_each(Tracer::abandon);
+            self.of = None;
+        } else if let Some(tracer) = self.tracer.as_ref().filter(|tracer| tracer.status().phase.is_working())
+        {
+            tracer.progressive.pause();
+        }
     }
 
     fn origin_of(&mut self, partner: Partner, mine: &Document) -> Option<Arc<Origin>> {
@@ -200,19 +218,9 @@ impl Second {
     }
 }
 
-fn other<'a>(
-    tracer: Option<&'a Tracer>,
-    of: Option<&Of>,
-    model: &'a Model,
-    main: &'a Tracer,
-) -> Option<Other<'a>> {
-    let document = &model.document;
-    match model.view.compared(document)? {
+fn other<'a>(tracer: Option<&'a Tracer>, of: Option<&Of>, model: &'a Model) -> Option<Other<'a>> {
+    match model.view.compared(&model.document)? {
         Partner::Kept(_) | Partner::Mine => model.view.kept_partner().map(Other::Kept),
-        Partner::Raw => {
-            let denoised = model.view.denoised_of(main.status().run).filter(|_| main.has_samples(document));
-            denoised.map(|_| Other::Traced(Partner::Raw, main, document))
-        }
         partner => {
             let tracer = tracer.filter(|_| of.is_some_and(|(of, ..)| *of == partner))?;
             Some(Other::Traced(partner, tracer, &tracer.shown()?.document))

@@ -28,11 +28,14 @@ pub struct Subject<'a> {
     pub document: &'a Document,
     pub tracing: &'a Tracing,
     pub denoised: Option<&'a Arc<Denoised>>,
+    /// The user wants it denoised.
+    pub is_denoised: bool,
 }
 
 impl<'a> Subject<'a> {
     pub fn new(view: &'a ViewState, document: &'a Document, tracing: &'a Tracing) -> Self {
-        Subject { document, tracing, denoised: view.denoised_of(tracing.main.status().run) }
+        let denoised = view.denoised_of(tracing.main.status().run);
+        Subject { document, tracing, denoised, is_denoised: view.shows_denoised() }
     }
 
     pub fn id(&self) -> PictureId {

@@ -11,7 +11,7 @@ pub use paint::Pictures;
 pub use placement::{Placement, Touch};
 
 use crate::app::commands::{Command, PanelContext, Snapshot};
-use crate::app::model::{Document, Mode, navigation};
+use crate::app::model::{Document, Mode, Partner, navigation};
 use crate::app::toolkit::menu;
 use crate::app::toolkit::widgets::compact;
 use crate::scene::Camera;
@@ -90,9 +90,14 @@ impl Viewport {
         let mut touch = Touch::default();
         let is_wipe = view.mode() == Some(Mode::Wipe);
         let mut is_held = self.handle_divider(ui, &response, is_wipe, divider);
-        // Nothing acts on a picture that another one hides.
-        let is_hidden = view.is_hidden();
-        if !is_hidden && !is_held {
+        // Nothing acts on a picture that another one hides; a traced one is seen by the same camera.
+        let at = ui.input(|input| input.pointer.press_origin()).or(response.interact_pointer_pos());
+        let at = at.or(response.hover_pos());
+        let is_over_other = at.is_some_and(|at| view.is_other(place_at(rect, at)[0]));
+        let is_same_scene = matches!(view.compared(live), Some(Partner::Device(_) | Partner::Book));
+        let is_covered = is_over_other && !is_same_scene;
+        let is_hidden = view.is_hidden() || is_over_other && view.kept_partner().is_some();
+        if !is_covered && !is_held {
             (is_held, touch.is_move) = self.selection.handle(ui, &response, rect, cx);
         }
         if is_held {
@@ -101,7 +106,7 @@ impl Viewport {
             let handles = (&mut *camera, live);
             self.moving.handle(ui, &response, &mut self.placement, handles, is_hidden, &mut touch);
         }
-        if !is_hidden && !is_held {
+        if !is_covered && !is_held {
             self.handle_click(ui, &response, cx, (camera, selected), &mut touch);
         }
         let document = Document { camera: *camera, ..live.clone() };
@@ -118,12 +123,10 @@ impl Viewport {
         self.pointer = response.hover_pos().filter(|at| rect.contains(*at)).map(|at| place_at(rect, at));
         let pixel = |at| self.placement.pixel_at(at, document.size());
         touch.hovered = response.hover_pos().and_then(pixel);
-        touch.is_over_other =
-            is_hidden || is_wipe && response.hover_pos().is_some_and(|at| at.x < own.left());
         if response.secondary_clicked()
             && let Some(at) = response.interact_pointer_pos().filter(|at| rect.contains(*at))
             && live.no_rays().is_none()
-            && !is_hidden
+            && !is_covered
         {
             *selected = live.pick(camera, place_at(rect, at)).map(|pick| pick.sphere);
         }
@@ -156,6 +159,12 @@ impl Viewport {
             return false;
         }
         let rect = self.placement.rect;
+        // A part that is enlarged has a divider, too.
+        let seen = self.room.map_or(rect, |room| rect.intersect(room)).shrink(1.0);
+        let [least, most] = [seen.left(), seen.right()].map(|x| (x - rect.left()) / rect.width());
+        if least > 0.01 || most < 0.99 {
+            *divider = divider.clamp(least, most.max(least));
+        }
         let is_near = |at: Pos2| (at.x - rect.lerp_inside(vec2(*divider, 0.0)).x).abs() < GRIP;
         if response.drag_started_by(PointerButton::Primary) {
             self.is_dragging_divider = ui.input(|input| input.pointer.press_origin()).is_some_and(is_near);
@@ -221,13 +230,7 @@ fn is_held(ui: &Ui, is_it: fn(&egui::Modifiers) -> bool) -> bool {
 fn context_menu(ui: &mut Ui, cx: &PanelContext) {
     use Command as C;
     ui.set_width(menu::MENU_WIDTH);
-    if cx.model.selected.is_some() {
-        for command in [C::FocusSphere, C::Copy, C::DuplicateSphere, C::DeleteSphere] {
-            menu::item(ui, cx, command);
-        }
-        ui.separator();
-    }
-    for command in [C::ListPaths, C::CopyPicture, C::Keep] {
-        menu::item(ui, cx, command);
-    }
+    let of_sphere = [C::FocusSphere, C::DuplicateSphere, C::DeleteSphere];
+    let of_sphere = of_sphere.into_iter().filter(|_| cx.model.selected.is_some());
+    of_sphere.chain([C::Copy, C::ListPaths, C::Keep]).for_each(|command| _ = menu::item(ui, cx, command));
 }

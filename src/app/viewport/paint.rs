@@ -23,7 +23,9 @@ pub struct Pictures<'a> {
     pub second: Option<(&'a Texture, bool)>,
     /// Paths to draw over the picture.
     pub paths: &'a Paths,
-    /// The column and row of places to mark.
+    /// The difference of the two is known.
+    pub has_difference: bool,
+    /// The column and row of places to mark in the other picture.
     pub places: &'a [[u32; 2]],
     /// The titles of the two pictures of a comparison, the other one first.
     pub titles: [&'a str; 2],
@@ -45,7 +47,7 @@ pub(super) fn paint(
         let is_square = !is_smooth && ((times - 1.0).abs() < 1e-4 || times >= SQUARES);
         texture.id(ui.ctx(), if is_square { TextureOptions::NEAREST } else { TextureOptions::LINEAR })
     };
-    let Pictures { main, second, paths, places, titles } = pictures;
+    let Pictures { main, second, paths, has_difference, places, titles } = pictures;
     // The hole is one point smaller, so that no gap stays between picture and background.
     let hole = if main.is_some() { rect.shrink(1.0).intersect(room) } else { Rect::NOTHING };
     fill_around(&painter, room, hole, theme::colours(ui).surround);
@@ -54,23 +56,23 @@ pub(super) fn paint(
         painter.image(id(texture, is_smooth), rect, WHOLE, Color32::WHITE);
     }
     let corners = rect.intersect(room);
+    let size_of_other = second.map_or(document.size(), |(texture, _)| texture.size());
+    let [corner, size] = laid_over(document.size(), size_of_other).map(|[x, y]| vec2(x as f32, y as f32));
+    let place = Rect::from_min_size(rect.min + corner * rect.size(), size * rect.size());
+    let is_difference = view.mode() == Some(Mode::Difference) && has_difference;
     match (view.mode(), second) {
         (Some(mode @ (Mode::Wipe | Mode::Flip)), Some((texture, is_smooth))) => {
-            let [corner, size] =
-                laid_over(document.size(), texture.size()).map(|[x, y]| vec2(x as f32, y as f32));
-            let place = Rect::from_min_size(rect.min + corner * rect.size(), size * rect.size());
             let left = (id(texture, is_smooth), place);
             let divider = if mode == Mode::Flip { 1.0 } else { divider };
             wipe(ui, &painter, rect, divider, left, titles);
         }
-        (Some(Mode::Difference), Some(_)) => {
+        _ if is_difference => {
             let words = format!("Difference of {} and {}", titles[0], titles[1]);
             title(ui, &painter, corners, Align2::LEFT_TOP, &words);
         }
         _ => {}
     }
-    mark(&painter, rect, document.size(), places);
-    let is_difference = view.mode() == Some(Mode::Difference) && second.is_some();
+    mark(&painter, place, size_of_other, places);
     let scale = if is_difference { Some(HeatScale::DIFFERENCE) } else { view.show().scale(&view.tone) };
     if let Some(scale) = scale {
         legend(ui, &painter, corners, &scale);

@@ -22,6 +22,8 @@ pub struct Placement {
     pub zoom: Zoom,
     /// Offset of the picture's middle from the middle of the viewport, in points.
     pan: Vec2,
+    /// How far it can be moved, points.
+    beyond: Vec2,
     /// Screen pixels per picture pixel when it was last drawn.
     pub times: f32,
     /// Where the picture was last drawn.
@@ -30,7 +32,7 @@ pub struct Placement {
 
 impl Default for Placement {
     fn default() -> Self {
-        Placement { zoom: Zoom::Fit, pan: Vec2::ZERO, times: 1.0, rect: Rect::ZERO }
+        Placement { zoom: Zoom::Fit, pan: Vec2::ZERO, beyond: Vec2::ZERO, times: 1.0, rect: Rect::ZERO }
     }
 }
 
@@ -74,8 +76,11 @@ impl Placement {
         self.zoom = Zoom::Times(times);
     }
 
-    /// Moves the picture by this many points.
+    /// Moves the picture by this many points, if it is larger than the viewport.
     pub fn pan_by(&mut self, points: Vec2) {
+        if self.beyond == Vec2::ZERO {
+            return;
+        }
         self.zoom = Zoom::Times(self.times);
         self.pan += points;
     }
@@ -104,8 +109,8 @@ impl Placement {
             Zoom::Times(times) => times,
         };
         // The picture's edges stay outside of the room, or in its middle.
-        let beyond = (0.5 * (size * self.times / pixels_per_point - room.size())).max(Vec2::ZERO);
-        self.pan = self.pan.clamp(-beyond, beyond);
+        self.beyond = (0.5 * (size * self.times / pixels_per_point - room.size())).max(Vec2::ZERO);
+        self.pan = self.pan.clamp(-self.beyond, self.beyond);
         let rect = Rect::from_center_size(room.center() + self.pan, size * self.times / pixels_per_point);
         let corner = (rect.min.to_vec2() * pixels_per_point).round() / pixels_per_point;
         self.rect = Rect::from_min_size(corner.to_pos2(), rect.size());
@@ -118,10 +123,9 @@ impl Placement {
             return None;
         }
         let along = (at - self.rect.min) / self.rect.size();
-        Some([
-            ((along.x * size[0] as f32) as u32).min(size[0] - 1),
-            ((along.y * size[1] as f32) as u32).min(size[1] - 1),
-        ])
+        // The pointer is at the corner of the screen's pixel, whose middle is drawn.
+        let pixel = |along: f32, side: u32| ((along * side as f32 + 0.5 / self.times) as u32).min(side - 1);
+        Some([pixel(along.x, size[0]), pixel(along.y, size[1])])
     }
 }
 
@@ -140,8 +144,6 @@ pub struct Touch {
     pub is_move: bool,
     /// The pixel under the pointer.
     pub hovered: Option<[u32; 2]>,
-    /// The other picture of a comparison lies over it.
-    pub is_over_other: bool,
     /// A message about the effect of a click, or why it has none.
     pub said: Option<String>,
 }

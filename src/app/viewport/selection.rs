@@ -2,9 +2,9 @@
 
 use super::placement::{place_at, point_at};
 use crate::app::commands::{PanelContext, Snapshot};
-use crate::app::model::spheres::Selected;
 use crate::app::model::spheres::grip::{Grip, Held};
 use crate::app::model::spheres::silhouette::Outline;
+use crate::app::model::spheres::{MANY, Selected};
 use crate::app::model::{Body, Document, Edit};
 use crate::app::toolkit::overlay::plate;
 use crate::app::toolkit::theme;
@@ -12,6 +12,7 @@ use crate::app::toolkit::widgets::{compact, point_words};
 use eframe::egui::{
     Align2, Color32, CursorIcon, PointerButton, Pos2, Rect, Response, Shape, Stroke, Ui, vec2,
 };
+use glam::DVec3;
 
 /// How close the pointer must be to the handle to grab it, in points.
 const GRIP: f32 = 9.0;
@@ -51,7 +52,8 @@ impl Selection {
             }
             return (true, is_changed);
         }
-        if let Some(held) = grasped(response.hover_pos().filter(|_| !response.dragged())) {
+        let is_small = document.scene().spheres.len() <= MANY;
+        if let Some(held) = grasped(response.hover_pos().filter(|_| is_small && !response.dragged())) {
             ui.ctx().set_cursor_icon(cursor(held.grip, false));
         }
         (false, false)
@@ -98,10 +100,14 @@ fn outline(selected: &Selected, document: &Document) -> Outline {
 }
 
 /// The part that a drag from this point of the screen would hold.
-fn grasped(rect: Rect, selected: &Selected, document: &Document, at: Pos2, is_level: bool) -> Option<Held> {
+fn grasped(rect: Rect, selected: &Selected, document: &Document, at: Pos2, is_free: bool) -> Option<Held> {
+    /// At its own height, the eye sees a level plane from its edge.
+    const EDGE: f64 = 0.05;
     let outline = outline(selected, document);
     extent(&outline)?;
     let start = place_at(rect, at);
+    let towards = (selected.body.center - document.camera.look_from).normalize_or_zero();
+    let is_level = !is_free && towards.dot(document.camera.vup.normalize_or(DVec3::Y)).abs() > EDGE;
     let grip = if is_level { Grip::Level } else { Grip::Centre };
     let held = Held { grip, sphere: selected.sphere, before: selected.body, start, offset: [0.0; 2] };
     if let Some((handle, place)) = handle_at(rect, &outline)

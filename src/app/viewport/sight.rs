@@ -1,7 +1,7 @@
 //! "Show me": the sight of a stage, and what the window showed before, to return to it.
 
 use super::placement::Placement;
-use crate::app::model::{Document, Mode, Origin, Partner, Show, ViewState};
+use crate::app::model::{Document, Mode, Origin, Partner, Show, Tone, ViewState};
 use crate::scene::Camera;
 use crate::stages::{Means, Stage};
 use std::sync::Arc;
@@ -59,9 +59,10 @@ impl Sight {
         if self.is_of(document) && document.camera == self.origin.recipe.camera {
             document.camera = self.before;
         }
-        let (exposure, kept) = (view.tone.exposure, std::mem::take(&mut view.kept));
-        *view = self.view;
-        (view.kept, view.tone.exposure) = (kept, exposure);
+        // Only what the sight has set; the rest is the user's.
+        let user = std::mem::replace(view, self.view);
+        view.tone = Tone { range: view.tone.range, ..user.tone };
+        (view.kept, view.is_denoised, view.denoised) = (user.kept, user.is_denoised, user.denoised);
         *placement = self.placement;
     }
 }
@@ -89,8 +90,10 @@ mod tests {
         document.camera.vfov_degrees = 33.0;
         let sight = Sight::show(stage, &mut document, &mut view, &mut placement);
         document.camera.vfov_degrees = 44.0;
+        (view.is_denoised, view.tone.exposure) = (true, 1.0);
         sight.end(&mut document, &mut view, &mut placement);
         assert_eq!(document.camera.vfov_degrees, 44.0);
+        assert!(view.is_denoised && view.tone.exposure == 1.0, "what was chosen meanwhile stays");
     }
 
     #[test]

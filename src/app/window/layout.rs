@@ -148,6 +148,8 @@ impl Window {
                 .and_then(|other| tracing.second.texture(&other))
                 .map(|(texture, is_preview)| (texture, is_preview || is_scaled)),
             paths: &tools.paths,
+            has_difference: tracing.second.means(&cx.model, cx.document().size()).is_some()
+                && shown.is_some_and(|shown| shown.divisor == 1 && shown.run == tracing.main.status().run),
             places: match cx.model.view.compared(cx.document()) {
                 Some(Partner::Mine) => tools.check.places(),
                 _ => &[],
@@ -160,7 +162,7 @@ impl Window {
     /// Does what the pointer did in the picture.
     fn take_touch(&mut self, ui: &Ui, touch: Touch) {
         let room = self.display.viewport.room;
-        self.tools.inspector.hover(touch.hovered, touch.is_over_other);
+        self.tools.inspector.hover(touch.hovered);
         if let Some(said) = touch.said {
             self.shell.toasts.good(said);
         }

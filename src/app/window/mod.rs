@@ -142,7 +142,9 @@ impl Window {
             is_moving: self.changes.is_in_gesture,
             is_held: self.tracing.main.is_held(),
             is_lost: self.display.is_lost && self.model.playing.is_none(),
-            has_pixel: self.tools.inspector.hovered.is_some(),
+            has_pixel: self.tools.inspector.hovered.is_some_and(|[x, _]| {
+                !self.model.view.is_other((f64::from(x) + 0.5) / f64::from(self.document().size()[0]))
+            }),
             has_paths: self.tools.paths.len() > 0,
             has_sight: self.display.sight.is_some(),
             invalid: self.tracing.invalid.clone(),
@@ -260,7 +262,8 @@ impl Window {
         let needs_film = self.files.needs_film() || self.model.other_device().is_some();
         self.tracing.follow_size(context, &mut self.model, room, needs_film);
         self.follow_check();
-        if self.changes.follow(context, &self.model.document) {
+        let is_visit = self.display.check.as_ref().is_some_and(|[_, of]| *of == self.model.document);
+        if self.changes.follow(context, &self.model.document, is_visit) {
             self.model.view.end_look();
         }
         let is_moving = self.changes.is_moving();
@@ -277,13 +280,19 @@ impl Window {
             model.view.denoised = Some(found);
         }
         let subject = Subject::new(&model.view, &model.document, tracing);
-        files.follow(context, &subject);
+        let lost = files.follow(context, &subject);
         files.follow_making(context, &mut shell.toasts);
         tools.follow(context, model, &subject);
         if !has_second {
             model.view.end_comparison();
         }
         display.kept.follow(context, model, tracing);
+        if let Some((document, named)) = lost {
+            let samples = document.stop.samples.unwrap_or(document.origin.recipe.samples_per_pixel);
+            let backend = self.model.backend();
+            let begun = self.files.save_rendered(context, (document, samples), backend, named);
+            begun.unwrap_or_else(|reason| self.shell.toasts.bad(format!("Not saved: {reason}")));
+        }
     }
 }
 

@@ -70,7 +70,7 @@ impl Window {
                     context.copy_text(sphere_to_toml(center, radius, &material));
                     shell.toasts.good("Copied the sphere as text; paste it here or in a scene file");
                 }
-                None => files.pending_copy = true,
+                None => files.copy.make(&model.document, ()),
             },
             C::Paste => match shell.pasted.take() {
                 Some(text) => match spheres::read(&text, document) {
@@ -80,7 +80,6 @@ impl Window {
                 // The text comes with a later frame.
                 None => context.send_viewport_cmd(ViewportCommand::RequestPaste),
             },
-            C::CopyPicture => files.pending_copy = true,
             C::Quit => context.send_viewport_cmd(ViewportCommand::Close),
             C::StopSaving => files.stop_saving(),
             C::DeleteFilms => self.store.delete(None),
@@ -123,7 +122,7 @@ impl Window {
             C::Brighter => view.tone.expose(Tone::STEP),
             C::Darker => view.tone.expose(-Tone::STEP),
             C::NoExposure => view.tone.exposure = 0.0,
-            C::Denoise => view.toggle_denoise(),
+            C::Denoise => view.is_denoised ^= true,
             C::Theme(theme) => {
                 remembered.theme = theme;
                 context.set_theme(theme);
@@ -171,12 +170,12 @@ impl Window {
                 model.choose_device(device);
             }
 
-            C::Keep => display.kept.is_wanted = true,
-            C::OnlyNoise => {
-                display.kept.is_asked = true;
+            C::Keep => display.kept.wanted.make(document, ()),
+            C::AreSame => {
                 if view.mode().is_none() {
                     view.toggle(Mode::Wipe);
                 }
+                display.kept.asked.make(document, view.partner);
             }
             C::GoOnFromKept => {
                 if let Some(document) = view.kept_partner().and_then(|kept| kept.document.clone()) {
@@ -235,8 +234,9 @@ impl Window {
         if self.stop_play() {
             return;
         }
-        let Window { model, tools, display, commands, .. } = self;
-        if model.presentation.is_some() {
+        let Window { model, tools, display, commands, shell, .. } = self;
+        if shell.toasts.close_newest() {
+        } else if model.presentation.is_some() {
             commands.push(Command::Present);
         } else if model.view.is_hidden() {
             model.view.end_look();
@@ -274,10 +274,13 @@ impl Window {
         if let Some(stop) = self.model.own_stop.filter(|_| document.stop.samples.is_none()) {
             document.stop = stop;
         }
-        // The bookmarks of a picture are there again when one comes back to it.
+        // Bookmarks and the end of a picture are there again when one comes back to it.
         let known = self.changes.last_of(&document.origin.source).filter(|_| !document.is_from_file);
         if let Some(known) = known.filter(|known| known.origin.source != Source::New) {
             document.keyframes.clone_from(&known.keyframes);
+            if known.stop != known.origin.usual_stop() {
+                document.stop = known.stop;
+            }
         }
         document
     }
@@ -289,6 +292,7 @@ impl Window {
         let was_with_stage = is_with_stage(&self.model);
         if !Arc::ptr_eq(&document.origin, &self.document().origin) {
             self.leave_picture();
+            self.shell.toasts.end_refusals();
         }
         self.model.document = document;
         // The next stage has a partner of its own; what has none is not compared with something of another kind.
@@ -336,6 +340,7 @@ impl Window {
         let is_other = !Arc::ptr_eq(&before.origin, &self.document().origin);
         if is_other {
             self.leave_picture();
+            self.tools.forget();
         }
         if is_other || before.scene().spheres.len() != self.document().scene().spheres.len() {
             self.model.selected = None;
@@ -379,7 +384,7 @@ impl Window {
 
     pub(super) fn edit(&mut self, edits: &[Edit]) {
         if let Err(reason) = spheres::edit(&mut self.model, edits) {
-            self.shell.toasts.bad(reason);
+            self.shell.toasts.good(reason);
         }
     }
 
@@ -416,6 +421,9 @@ impl Window {
             self.visit_checked();
         }
         self.model.view.compare_with(partner);
+        if partner == Partner::Mine && self.display.check.is_none() && !self.model.view.is_hidden() {
+            self.model.view.toggle(Mode::Flip);
+        }
         if matches!(partner, Partner::Device(_)) {
             self.model.remembered.dock = Some(Dock::Error);
         }
@@ -455,16 +463,17 @@ impl Window {
         self.display.check = Some([before, self.document().clone()]);
     }
 
-    /// Takes what a check has found, and shows it if the check is in sight.
+    /// Takes what a check has read or found, and shows it if the check is in sight.
     pub(super) fn take_checked(&mut self) {
-        let mine = self.tools.check.found().map(|(_, mine)| Arc::clone(mine));
-        let before = std::mem::replace(&mut self.model.view.kept.mine, mine);
+        let before = std::mem::replace(&mut self.model.view.kept.mine, self.tools.check.mine.clone());
+        let is_compared = self.model.view.compared(self.document()) == Some(Partner::Mine);
         if self.model.view.kept.mine.is_none() {
             self.end_check();
-        } else if before.is_none() && self.model.shows(Tab::Check) {
-            self.model.view.end_comparison();
-            self.compare_with(Partner::Mine);
-        } else if self.model.view.compared(self.document()) == Some(Partner::Mine) {
+        } else if before.is_none() && self.model.shows(Tab::Check) || is_compared {
+            // The first finding shows it beside ours.
+            if before.is_none() || self.display.check.is_none() {
+                self.model.view.end_comparison();
+            }
             self.compare_with(Partner::Mine);
         }
     }
@@ -544,12 +553,19 @@ impl Window {
         *panel = !*panel || !had_panels;
     }
 
-    /// Gives the focus to a control of the next panel.
+    /// Gives the focus to a control of the next panel, or to a message.
     fn focus_next_panel(&mut self, context: &Context) {
-        let Remembered { tab, has_controls, has_info, .. } = self.model.remembered;
-        let is_left = has_controls && (context.content_rect().width() >= NARROW || tab == Tab::Controls);
-        let of_left = if self.document().no_rays().is_some() { "Size and samples" } else { "Field of view" };
-        let panels = [(MENUS[0], true), (of_left, is_left), ("Compare with", has_info && tab == Tab::Stage)];
+        let Remembered { tab, has_controls, has_info, dock, .. } = self.model.remembered;
+        let is_narrow = context.content_rect().width() < NARROW;
+        let of_left = if self.document().no_rays().is_some() { "Render" } else { "Field of view" };
+        let of_right = if tab == Tab::Stage { "Compare with" } else { tab.name() };
+        let panels = [
+            (MENUS[0], true),
+            (of_left, has_controls && (!is_narrow || tab == Tab::Controls)),
+            (of_right, has_info && tab != Tab::Controls),
+            (dock.map_or("", Dock::name), dock.is_some()),
+            ("Close this message", self.shell.toasts.texts().next().is_some()),
+        ];
         let mut shown = (0..panels.len()).map(|step| (self.shell.panel + step) % panels.len());
         if self.model.has_panels()
             && let Some(next) = shown.find(|next| panels[*next].1)
@@ -674,7 +690,7 @@ impl Window {
         match what {
             What::Scene => self.files.save_scene(context, path, document),
             What::Picture(format) if size == document.size() => {
-                self.files.pending_save = Some((format, path));
+                self.files.save.make(document, (format, path));
             }
             What::Picture(format) => {
                 let samples = samples_to_save(document, self.tracing.main.status());

@@ -80,6 +80,7 @@ impl Window {
     /// A success ends the error about `subject`, and a failure is one.
     fn settle<T>(&mut self, subject: &str, outcome: Result<T, String>) -> Option<T> {
         match &outcome {
+            Ok(_) if subject.starts_with("Not ") => self.shell.toasts.end_refusals(),
             Ok(_) => self.shell.toasts.end_error(subject),
             Err(reason) => self.shell.toasts.bad(format!("{subject}: {reason}")),
         }
@@ -98,8 +99,7 @@ impl Window {
         let path = saved.path;
         self.show_document(document);
         self.model.remembered.note_recent(&path);
-        let words = format!("Opened {}; its size and samples hold for this picture only", name_of(&path));
-        self.shell.toasts.good(words);
+        self.shell.toasts.good(format!("Opened {}", name_of(&path)));
         film.into_iter().for_each(|film| self.adopt(film));
     }
 
@@ -146,7 +146,7 @@ impl Window {
         let origin = Arc::clone(&self.document().origin);
         self.files.scene_file.watch(context, &origin);
         let Source::File(path) = &origin.source else {
-            self.shell.toasts.end_error("Not reloaded");
+            self.shell.toasts.end_error("File not reloaded");
             return;
         };
         let name = name_of(path);
@@ -155,11 +155,11 @@ impl Window {
                 Ok(recipe) => {
                     let reloaded = self.document().reloaded(recipe);
                     self.show_document(reloaded);
-                    self.shell.toasts.end_error("Not reloaded");
+                    self.shell.toasts.end_error("File not reloaded");
                     self.shell.toasts.good(format!("Reloaded {name}; Undo returns"));
                 }
                 Err(reason) => {
-                    self.shell.toasts.bad(format!("Not reloaded: {reason}. The picture stays as it is"))
+                    self.shell.toasts.bad(format!("File not reloaded: {reason}. The picture stays as it is"))
                 }
             }
         }

@@ -135,6 +135,8 @@ impl Render {
     pub fn fail(&mut self, error: &RenderError) {
         if matches!(error, RenderError::FilmLost { .. }) {
             self.film = self.job.new_film();
+            (self.status.contributions, self.status.history) = Default::default();
+            (self.status.stats, self.next_history_samples) = Default::default();
             self.note_film();
         }
         // Samples that were not in the film are lost, and rendered again.

@@ -11,7 +11,7 @@ use crate::system::memory;
 use std::sync::Arc;
 
 /// Scenes with more spheres than this are not searched in each frame.
-const MANY: usize = 50_000;
+pub const MANY: usize = 50_000;
 
 /// A sphere with a radius of this many times the distance to the point looked at is ground.
 const GROUND: f64 = 2.0;
@@ -55,7 +55,9 @@ pub fn edit(model: &mut Model, edits: &[Edit]) -> Result<(), String> {
     let checked = if scene == *recipe.scene {
         Arc::clone(&document.origin.scene)
     } else {
-        let checked = CheckedScene::new(Arc::new(scene), recipe.rules);
+        let change = edits.last().map_or("", |edit| edit.name(document.scene()));
+        let mut checked = CheckedScene::new(Arc::new(scene), recipe.rules);
+        checked.change = change;
         checked.check().map_err(|error| error.to_string())?;
         Arc::new(checked)
     };

@@ -98,7 +98,7 @@ fn another_kind_of_material_keeps_the_colour() {
 #[test]
 fn one_limit_at_a_time_ends_the_render() {
     let mut harness = panel("--stage book");
-    harness.get_by_label("Size and samples, folded").click();
+    harness.get_by_label("Render, folded").click();
     harness.run_steps(20);
     for (name, expected) in [
         ("Samples", Stop::at_samples(500)),

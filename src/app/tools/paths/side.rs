@@ -2,6 +2,7 @@
 
 use super::{Path, is_ground};
 use crate::app::model::Document;
+use crate::app::model::spheres::MANY;
 use crate::app::toolkit::theme;
 use crate::scene::{Look, Sphere};
 use eframe::egui::{Align2, Color32, RichText, Sense, Ui};
@@ -76,7 +77,8 @@ pub(super) fn ui(ui: &mut Ui, path: &Path, at: usize, document: &Document) {
         let [from, to] = [low - margin, high + margin];
         plot.set_plot_bounds(PlotBounds::from_min_max(from.to_array(), to.to_array()));
         // What the plane cuts, and what the path touches.
-        for sphere in scene.spheres.iter().filter(|sphere| !is_ground(sphere)) {
+        let count = if scene.spheres.len() > MANY { 0 } else { scene.spheres.len() };
+        for sphere in scene.spheres[..count].iter().filter(|sphere| !is_ground(sphere)) {
             let off = sphere.center.dot(normal) - depth;
             if off.abs() < sphere.radius {
                 let radius = (sphere.radius.powi(2) - off.powi(2)).sqrt();
