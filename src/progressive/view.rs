@@ -12,8 +12,8 @@ pub enum View {
     /// The picture with the job's transfer.
     #[default]
     Picture,
-    /// The picture with radiance multiplied by two to the power of this many stops; one channel alone as grey.
-    Exposed(f64, Option<usize>),
+    /// The picture with radiance multiplied by two to the power of this many stops.
+    Exposed(f64),
     /// Luminance as a heat map from one power of two to another.
     Luminance([f64; 2]),
     /// The standard error of each pixel's mean, estimated from the halves.
@@ -65,7 +65,7 @@ impl View {
     /// The scale of the heat map; `None` for the picture itself.
     pub fn scale(&self) -> Option<HeatScale> {
         match self {
-            View::Picture | View::Exposed(..) => None,
+            View::Picture | View::Exposed(_) => None,
             View::Luminance(stops) => Some(HeatScale::luminance(*stops)),
             View::StandardError => Some(HeatScale::ERROR),
             View::Difference(_) => Some(HeatScale::DIFFERENCE),
@@ -104,13 +104,7 @@ impl View {
                 })
             }
             View::Luminance(_) => heat(&|pixel| luminance(film.mean(pixel))),
-            View::Exposed(stops, channel) => {
-                let mut rgb8 = film.exposed(transfer, *stops);
-                if let Some(channel) = *channel {
-                    rgb8.chunks_exact_mut(3).for_each(|pixel| pixel.fill(pixel[channel]));
-                }
-                rgb8
-            }
+            View::Exposed(stops) => film.exposed(transfer, *stops),
             View::Picture | View::Difference(_) => film.to_rgb8(transfer),
             View::Denoised(denoised, view) if !denoised.is_of(film) => view.resolve(film, transfer),
             View::Denoised(denoised, view) if **view == View::StandardError => {
@@ -203,7 +197,7 @@ mod tests {
         film.record(0..1, 0).unwrap();
         let shown = |view: View| view.resolve(&film, Transfer::Linear);
         assert_eq!(shown(View::Luminance([-8.0, 4.0])), [159, 42, 99]);
-        assert_eq!([shown(View::Exposed(1.0, None)), shown(View::Exposed(-1.0, None))], [[128; 3], [32; 3]]);
+        assert_eq!([shown(View::Exposed(1.0)), shown(View::Exposed(-1.0))], [[128; 3], [32; 3]]);
         let primaries = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         assert_eq!(primaries.map(luminance), [0.2126, 0.7152, 0.0722]);
     }
@@ -222,8 +216,7 @@ mod tests {
                 && !view.is_same(&View::Picture)
         );
         assert!(
-            View::Exposed(1.0, None).is_same(&View::Exposed(1.0, None))
-                && !View::Exposed(1.0, None).is_same(&View::Exposed(2.0, None))
+            View::Exposed(1.0).is_same(&View::Exposed(1.0)) && !View::Exposed(1.0).is_same(&View::Exposed(2.0))
         );
     }
 }

@@ -54,20 +54,6 @@ fn the_picture_fills_the_viewport_at_its_own_resolution() {
 }
 
 #[test]
-fn a_size_that_needs_much_memory_is_asked_about_first() {
-    let mut harness = following(FOLLOWING, [1000.0, 600.0]);
-    until(&mut harness, "the end", has_samples(2));
-    let before = size(&harness);
-    harness.state_mut().document_mut().give_size([30_000, 30_000]);
-    harness.run_steps(3);
-    assert!(harness.state().has_dialog());
-    assert_eq!(size(&harness), before);
-    harness.key_press(Key::Escape);
-    harness.run_steps(3);
-    assert_eq!((size(&harness), harness.state().has_dialog()), (before, false));
-}
-
-#[test]
 fn panels_only_show_the_picture_smaller() {
     let mut harness = following(FOLLOWING, [1280.0, 800.0]);
     settle(&mut harness);

@@ -1,7 +1,7 @@
 //! All commands of menus, keys, buttons and the palette: one table, with one row per command.
 
 use super::snapshot::Snapshot;
-use crate::app::model::{Channel, Device, Dock, Mode, Partner, Show, Tab, ViewState};
+use crate::app::model::{Device, Dock, Mode, Partner, Show, Tab, ViewState};
 use crate::job::output::OutputFormat;
 use crate::measure::stress::Case;
 use crate::stages::Stage;
@@ -136,7 +136,6 @@ table! {
         Show(Show),
         Theme(ThemePreference),
         Device(Device),
-        Channel(Channel),
         Stage(&'static Stage),
         Extreme(&'static Case),
         /// Opens a recent file.
@@ -159,9 +158,6 @@ table! {
         needs(is_live, KEPT_IS_SHOWN), also("save as export png ppm exr toml download film scene");
     SaveAnimation "Save animation…", "Renders the frames of a film: along the bookmarks, or once around",
         off(|f| f.no_rays().map(str::to_owned)), also("video movie frames turntable keyframes");
-    ShowInFolder "Show in folder", "Opens the folder of the file that was saved or opened last",
-        needs(|f| !f.model.remembered.recent.is_empty(), "Nothing has been saved or opened yet"),
-        also("directory explorer finder");
     Quit "Quit", "Closes the window; the next one begins where this one ends", keys(CTRL, Key::Q), line(),
         also("close exit");
 
@@ -330,12 +326,6 @@ fn family_rows() -> Vec<Row> {
     ] {
         let row = Row::new(Some("Theme"), Command::Theme(theme), [name, help]);
         rows.push(row.on(move |f| f.model.remembered.theme == theme).also(synonyms));
-    }
-    for channel in Channel::ALL {
-        let words = [channel.name(), "Shows one channel alone, as grey; again shows all"];
-        let row = Row::new(None, Command::Channel(channel), words).keys(SHIFT, channel.key());
-        let row = row.off(|f| f.model.no_exposure()).also("channel rgb");
-        rows.push(row.on(move |f| f.model.view.tone.channel == Some(channel)));
     }
     for device in [Device::Cpu, Device::Gpu] {
         let row = Row::new(None, Command::Device(device), [device.label(), device.help()]);

@@ -8,13 +8,11 @@ use crate::app::panels::controls::in_shape;
 use crate::app::panels::status::time;
 use crate::app::toolkit::widgets::{About, FIELD, Number, hint, named, primary, row, samples_words, small};
 use crate::app::toolkit::{Answers, theme};
-use crate::film::Film;
 use crate::job::recipe::plain_name;
 use crate::job::render::{SAMPLE_LIMIT, SIZE_LIMIT};
 use crate::progressive::{Phase, Status};
 use crate::scene::animation::FRAME_LIMIT;
 use crate::system::files::pictures_directory;
-use crate::system::memory;
 use eframe::egui::text::{CCursor, CCursorRange};
 use eframe::egui::{self, Align, Key, Label, Layout, Stroke, TextEdit, Ui, vec2};
 use std::path::{Path, PathBuf};
@@ -391,58 +389,10 @@ pub fn samples_to_save(document: &Document, status: &Status) -> u64 {
     }
 }
 
-/// Samples per pixel that the picture has when it is done, as far as is known.
-fn samples_wanted(document: &Document, status: &Status) -> u64 {
-    let traced = status.samples_per_pixel.max(1);
-    if matches!(status.phase, Phase::Done(_)) { traced } else { document.stop.samples.unwrap_or(traced) }
-}
-
 /// About how many seconds this number of samples per pixel takes at this size.
 fn seconds_at(status: &Status, [width, height]: [u32; 2], samples: u64) -> Option<f64> {
     let speed = Some(status.paths_per_second()).filter(|speed| *speed > 0.0)?;
     Some((f64::from(width) * f64::from(height) * samples as f64 / speed).ceil())
-}
-
-/// A size that needs much memory or time, and asks before it is rendered.
-pub struct LargeSize {
-    size: [u32; 2],
-    words: String,
-    /// There is memory for it.
-    fits: bool,
-}
-
-impl LargeSize {
-    const BYTES: u64 = 1_000_000_000;
-    const SECONDS: f64 = 300.0;
-
-    /// None if the size is harmless.
-    pub fn of(document: &Document, status: &Status, size: [u32; 2], before: [u32; 2]) -> Option<Self> {
-        // The sums, the picture and its texture.
-        let bytes_of =
-            |[width, height]: [u32; 2]| Film::bytes(width, height) + 7 * u64::from(width) * u64::from(height);
-        let seconds_of = |size| seconds_at(status, size, samples_wanted(document, status));
-        let (bytes, seconds) = (bytes_of(size), seconds_of(size));
-        let is_slow = |size| seconds_of(size).is_some_and(|seconds| seconds > LargeSize::SECONDS);
-        if bytes_of(before) >= bytes || bytes <= LargeSize::BYTES && (!is_slow(size) || is_slow(before)) {
-            return None;
-        }
-        let [width, height] = size;
-        let needs = format!("{width} × {height} needs {}", memory::words(bytes));
-        let time = seconds.map_or_else(String::new, |seconds| format!(" and about {}", time(seconds)));
-        let fits = memory::check(|| needs.clone(), bytes, "choose a smaller size");
-        let words = fits.as_ref().map_or_else(ToString::to_string, |()| format!("{needs}{time}."));
-        Some(LargeSize { size, words, fits: fits.is_ok() })
-    }
-
-    pub(super) fn ui(&self, ui: &mut Ui) -> Outcome {
-        let words = ui.label(&self.words);
-        ui.add_space(12.0);
-        match buttons(ui, &words, "Render", self.fits) {
-            Some(true) => Outcome::Size(self.size),
-            Some(false) => Outcome::Close,
-            None => Outcome::Stay,
-        }
-    }
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ mod outcome;
 mod palette;
 pub mod stage_list;
 
-pub use files::{LargeSize, PathField, SaveBox, default_folder, samples_to_save};
+pub use files::{PathField, SaveBox, default_folder, samples_to_save};
 pub use outcome::{Outcome, Purpose, Wanted, What};
 
 use crate::app::commands::PanelContext;
@@ -29,8 +29,6 @@ pub enum Dialog {
     Save(SaveBox),
     /// The entry of a path.
     Path(PathField),
-    /// A size that needs much memory or time.
-    Large(LargeSize),
     /// The window is to be closed, but a picture for a file of this name is still rendered.
     Leave(String),
 }
@@ -83,7 +81,6 @@ impl Dialogs {
                 Dialog::About => about::ui(ui, cx),
                 Dialog::Save(save) => save.ui(ui, cx, &mut self.system),
                 Dialog::Path(field) => field.ui(ui),
-                Dialog::Large(large) => large.ui(ui),
                 Dialog::Leave(name) => leave::ui(name, ui),
             }
         });

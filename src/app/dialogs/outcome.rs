@@ -11,8 +11,6 @@ pub enum Outcome {
     Named(Purpose, PathBuf),
     /// It closes: this is saved.
     Save(Wanted),
-    /// It closes: the picture gets this size.
-    Size([u32; 2]),
     /// It closes, and so does the window, at once or when everything is saved.
     Leave {
         saves: bool,

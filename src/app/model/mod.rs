@@ -29,7 +29,7 @@ pub use kept::{Kept, KeptList};
 pub use origin::{Origin, Source};
 pub use partner::Partner;
 pub use remembered::{Dock, Remembered, Stored, Tab};
-pub use show::{Channel, Show, Tone};
+pub use show::{Show, Tone};
 pub use sizing::{Sizing, at_other, laid_over};
 pub use state::{Model, Presentation};
 pub use view::{Found, Mode, ViewState};

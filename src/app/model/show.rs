@@ -4,7 +4,6 @@ use crate::backends::layers::Layer;
 use crate::numbers::heat::HeatScale;
 use crate::progressive::View;
 use crate::stages::Means;
-use eframe::egui::Key;
 use serde::{Deserialize, Serialize};
 
 /// A view of the film.
@@ -106,43 +105,13 @@ impl Show {
 pub struct Tone {
     /// Radiance is multiplied by two to the power of this many stops.
     pub exposure: f64,
-    /// The only channel that is shown, as grey.
-    pub channel: Option<Channel>,
     /// The darkest and the brightest luminance of the luminance view, as powers of two.
     pub range: [f64; 2],
 }
 
-/// A channel of the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Channel {
-    Red,
-    Green,
-    Blue,
-}
-
-impl Channel {
-    pub const ALL: [Channel; 3] = [Channel::Red, Channel::Green, Channel::Blue];
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Channel::Red => "Only red",
-            Channel::Green => "Only green",
-            Channel::Blue => "Only blue",
-        }
-    }
-
-    pub fn key(self) -> Key {
-        match self {
-            Channel::Red => Key::R,
-            Channel::Green => Key::G,
-            Channel::Blue => Key::B,
-        }
-    }
-}
-
 impl Default for Tone {
     fn default() -> Self {
-        Tone { exposure: 0.0, channel: None, range: [-8.0, 4.0] }
+        Tone { exposure: 0.0, range: [-8.0, 4.0] }
     }
 }
 
@@ -158,17 +127,9 @@ impl Tone {
         self.exposure = (self.exposure + stops).clamp(*Self::EXPOSURES.start(), *Self::EXPOSURES.end());
     }
 
-    /// Shows this channel alone, or all again.
-    pub fn toggle(&mut self, channel: Channel) {
-        self.channel = if self.channel == Some(channel) { None } else { Some(channel) };
-    }
-
     /// The view of the picture.
     pub fn of_picture(&self) -> View {
-        match self.channel {
-            None if self.exposure == 0.0 => View::Picture,
-            channel => View::Exposed(self.exposure, channel.map(|channel| channel as usize)),
-        }
+        if self.exposure == 0.0 { View::Picture } else { View::Exposed(self.exposure) }
     }
 }
 
@@ -181,7 +142,7 @@ mod tests {
         let mut tone = Tone::default();
         assert_eq!(tone.of_picture(), View::Picture);
         tone.expose(1.5);
-        assert_eq!((tone.exposure, tone.of_picture()), (1.5, View::Exposed(1.5, None)));
+        assert_eq!((tone.exposure, tone.of_picture()), (1.5, View::Exposed(1.5)));
         tone.expose(-3.5);
         assert_eq!(tone.exposure, -2.0);
         tone.expose(-1e3);

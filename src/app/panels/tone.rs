@@ -1,18 +1,17 @@
 //! The view of the picture and its brightness.
 
 use crate::app::commands::{Command, PanelContext};
-use crate::app::model::{Channel, Show, Tone, ViewState};
+use crate::app::model::{Show, Tone, ViewState};
 use crate::app::toolkit::widgets::{
-    About, Header, Number, add_command, compact, entry, fold, list, row, switch,
+    About, Header, Number, add_command, compact, entry, fold, list,
 };
 use eframe::egui::{Checkbox, Ui};
 
 /// Draws the view and its brightness.
 pub fn ui(ui: &mut Ui, view: &mut ViewState, cx: &PanelContext) {
-    let (show, channel) = (view.show(), view.tone.channel);
+    let show = view.show();
     let mut summary = vec![show.name().trim_end_matches('…').to_lowercase()];
     summary.extend(view.shows_denoised().then(|| "denoised".to_owned()));
-    summary.extend(channel.map(|channel| channel.name().to_lowercase()));
     if view.tone.exposure != 0.0 {
         let sign = if view.tone.exposure > 0.0 { "+" } else { "" };
         summary.push(format!("{sign}{} stops", compact(view.tone.exposure)));
@@ -32,21 +31,12 @@ pub fn ui(ui: &mut Ui, view: &mut ViewState, cx: &PanelContext) {
         let mut is_denoised = view.is_denoised;
         let denoise = Checkbox::new(&mut is_denoised, Command::Denoise.name());
         add_command(ui, cx, Command::Denoise, denoise);
-        let reason = cx.model.no_exposure();
-        brightness_ui(ui, &mut view.tone, reason.as_deref());
+        let (help, reason) = (
+            "Brightens what you see by powers of two; saved files stay as they are (+, −, 0)",
+            cx.model.no_exposure(),
+        );
+        let about = About::new("Exposure", help).disabled_if(reason.as_deref());
+        let number = Number::new(about, Tone::EXPOSURES).unit(" stops").speed(0.02);
+        number.slider(ui, &mut view.tone.exposure, Tone::EXPOSURES, false);
     });
-}
-
-fn brightness_ui(ui: &mut Ui, tone: &mut Tone, reason: Option<&str>) {
-    let help = "Show one channel alone, as grey (Shift+R, G, B)";
-    row(ui, About::new("Channels", help).disabled_if(reason), |ui| {
-        let [red, green, blue] = Channel::ALL.map(Some);
-        let options = [(None, "RGB"), (red, "R"), (green, "G"), (blue, "B")]
-            .map(|(channel, name)| (channel, About::new(name, help).disabled_if(reason)));
-        tone.channel = switch(ui, 0.0, tone.channel, &options).unwrap_or(tone.channel);
-    });
-    let help = "Brightens what you see by powers of two; saved files stay as they are (+, −, 0)";
-    let about = About::new("Exposure", help).disabled_if(reason);
-    let number = Number::new(about, Tone::EXPOSURES).unit(" stops").speed(0.02);
-    number.slider(ui, &mut tone.exposure, Tone::EXPOSURES, false);
 }

@@ -234,8 +234,6 @@ pub struct Sizer {
     is_asked: bool,
     /// The size of the window, points, when the picture got its size.
     window: Vec2,
-    /// A large size that the user wants.
-    pub accepted: Option<[u32; 2]>,
     /// The size at which the picture could be rendered anew, if it is only scaled.
     pub offer: Option<[u32; 2]>,
 }

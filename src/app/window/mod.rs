@@ -251,7 +251,6 @@ impl Window {
             self.model.document.camera = self.changes.last.camera;
         }
         self.shell.toasts.follow(&self.model.document);
-        self.ask_about_size();
         let document = &self.model.document;
         // A picture without noise ends at its own number of samples, whatever the user prefers.
         if !document.is_from_file && document.origin.usual_stop().samples.is_none() {

@@ -4,7 +4,7 @@ use super::Window;
 use super::layout::NARROW;
 use crate::app::commands::{Command, MENUS, Snapshot};
 use crate::app::dialogs::{
-    Dialog, LargeSize, Outcome, Purpose, SaveBox, Wanted, What, default_folder, samples_to_save, stage_list,
+    Dialog, Outcome, Purpose, SaveBox, Wanted, What, default_folder, samples_to_save, stage_list,
 };
 use crate::app::model::animation::{FRAMES_PER_SECOND, Play};
 use crate::app::model::spheres::grip::new_body;
@@ -25,7 +25,6 @@ use crate::stages::{BOOK_URL, Stage};
 use crate::system::terminal::ProgressChoice;
 use eframe::egui::{self, Context, ViewportCommand};
 use std::path::{Path, PathBuf};
-use std::process;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -64,7 +63,6 @@ impl Window {
             C::SaveAs(format) => self.ask_save(What::Picture(format)),
             C::SaveAnimation => self.ask_save(What::Animation),
             C::Recent(place) => self.open_recent(context, place),
-            C::ShowInFolder => self.show_in_folder(context),
             C::Copy => match Selected::of(model) {
                 Some(Selected { body: Body { center, radius, material }, .. }) => {
                     context.copy_text(sphere_to_toml(center, radius, &material));
@@ -118,7 +116,6 @@ impl Window {
             C::ZoomIn => display.viewport.placement.zoom_by(1.25),
             C::ZoomOut => display.viewport.placement.zoom_by(0.8),
             C::Show(show) => view.choose(show),
-            C::Channel(channel) => view.tone.toggle(channel),
             C::Brighter => view.tone.expose(Tone::STEP),
             C::Darker => view.tone.expose(-Tone::STEP),
             C::NoExposure => view.tone.exposure = 0.0,
@@ -671,10 +668,6 @@ impl Window {
                     self.shell.toasts.bad(format!("Not saved: {reason}"));
                 }
             }
-            Outcome::Size(size) => {
-                self.tracing.sizer.accepted = Some(size);
-                self.model.document.give_size(size);
-            }
             Outcome::Leave { saves: true } => self.shell.leaves_when_saved = true,
             Outcome::Leave { saves: false } => {
                 self.files.stop_saving();
@@ -731,25 +724,6 @@ impl Window {
         Ok(())
     }
 
-    /// Asks before a size is rendered that needs much memory or time. Until then the picture has the size of before.
-    pub(super) fn ask_about_size(&mut self) {
-        let (size, before) = (self.document().size(), &self.changes.last);
-        if size == before.size() || self.tracing.film.is_some() || self.tracing.sizer.accepted == Some(size) {
-            return;
-        }
-        let before = if Arc::ptr_eq(&before.origin, &self.document().origin) {
-            (before.size(), before.has_own_size)
-        } else {
-            let room = self.display.viewport.room_pixels;
-            (self.document().origin.size_in(room).unwrap_or(before.size()), true)
-        };
-        if let Some(large) = LargeSize::of(self.document(), self.tracing.main.status(), size, before.0) {
-            self.model.document.set_size(before.0);
-            self.model.document.has_own_size = before.1;
-            self.shell.dialogs.open(Dialog::Large(large));
-        }
-    }
-
     pub(super) fn open_recent(&mut self, context: &Context, place: usize) {
         let recent = &mut self.model.remembered.recent;
         let Some(path) = recent.get(place).cloned() else { return };
@@ -758,21 +732,6 @@ impl Window {
         } else {
             recent.remove(place);
             self.shell.toasts.bad(format!("{} is no longer there; the list drops it", path.display()));
-        }
-    }
-
-    pub(super) fn show_in_folder(&mut self, context: &Context) {
-        let Some(folder) = self.model.remembered.recent.first().and_then(|path| path.parent()) else {
-            return;
-        };
-        let manager = match std::env::consts::OS {
-            "windows" => "explorer",
-            "macos" => "open",
-            _ => "xdg-open",
-        };
-        let has_desktop = self.shell.dialogs.system.is_there;
-        if !has_desktop || process::Command::new(manager).arg(folder).spawn().is_err() {
-            self.open_url(context, companion::file_url(folder));
         }
     }
 

@@ -20,8 +20,7 @@ impl Window {
                 Some(Made::File(path, scene)) => {
                     scene.iter().for_each(|saved| self.take_file(&path, saved));
                     self.model.remembered.note_recent(&path);
-                    let words = format!("Saved {}", name_of(&path));
-                    self.shell.toasts.good_with(words, &[Command::ShowInFolder]);
+                    self.shell.toasts.good(format!("Saved {}", path.display()));
                 }
                 Some(Made::Frames(count, folder)) => {
                     let frames = counted(count.into(), "frame");

@@ -341,7 +341,7 @@ impl Render {
         let transfer = self.job.rules().transfer;
         // Previews are smoothed; heat maps show the film as it is.
         let is_smooth =
-            self.plan.preview.is_some() && matches!(view, View::Picture | View::Exposed(.., None));
+            self.plan.preview.is_some() && matches!(view, View::Picture | View::Exposed(_));
         let rgb8 = if is_smooth {
             view.resolve(&self.film.smoothed(), transfer)
         } else {

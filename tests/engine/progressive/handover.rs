@@ -255,7 +255,7 @@ fn a_preview_is_smooth_and_has_no_error() {
     assert_ne!(film.smoothed().to_rgb8(transfer), film.to_rgb8(transfer), "there is noise to smooth");
     assert_eq!(shown(Some(4), View::Picture), (film.smoothed().to_rgb8(transfer), None));
     assert_eq!(shown(None, View::Picture), (film.to_rgb8(transfer), Some(2)));
-    assert_eq!(shown(Some(4), View::Exposed(1.0, None)).0, film.smoothed().exposed(transfer, 1.0));
+    assert_eq!(shown(Some(4), View::Exposed(1.0)).0, film.smoothed().exposed(transfer, 1.0));
     // Heat maps are not smoothed.
     let view = View::Luminance([-8.0, 4.0]);
     assert_eq!(shown(Some(4), view.clone()).0, view.resolve(&film, transfer));
