@@ -216,7 +216,8 @@ mod tests {
                 && !view.is_same(&View::Picture)
         );
         assert!(
-            View::Exposed(1.0).is_same(&View::Exposed(1.0)) && !View::Exposed(1.0).is_same(&View::Exposed(2.0))
+            View::Exposed(1.0).is_same(&View::Exposed(1.0))
+                && !View::Exposed(1.0).is_same(&View::Exposed(2.0))
         );
     }
 }

@@ -1,9 +1,8 @@
-//! One's own world: a new scene, the list of spheres, and spheres as text.
+//! One's own world: a new scene, and the list of spheres.
 
 use crate::harness::{control, has_samples, open, open_sized, save, send, until};
-use crate::objects::{metal_sphere, opened, select, spheres};
 use crate::questions::Ask as _;
-use eframe::egui::{self, Key, Modifiers};
+use eframe::egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::NodeT;
 use weekender::app::{Command, Window};
@@ -84,95 +83,4 @@ fn all_spheres_are_listed_found_and_selected() {
     harness.run_steps(3);
     let shown = rows(&harness);
     assert!(shown.len() < 20 && shown.contains(&70_001), "{shown:?}");
-    control(&harness, "Find a sphere").click();
-    harness.run_steps(2);
-    control(&harness, "Find a sphere").type_text("99999");
-    harness.run_steps(3);
-    harness.key_press(Key::Enter);
-    harness.run_steps(3);
-    assert_eq!((rows(&harness), harness.state().selected()), (vec![99_999], Some(99_998)));
-}
-
-/// The text that Ctrl+C copies.
-fn copied(harness: &mut Harness<'_, Window>) -> String {
-    harness.event(egui::Event::Copy);
-    harness.step();
-    let commands = &harness.output().platform_output.commands;
-    let text = commands.iter().find_map(|command| match command {
-        egui::OutputCommand::CopyText(text) => Some(text.clone()),
-        _ => None,
-    });
-    text.unwrap_or_default()
-}
-
-fn paste(harness: &mut Harness<'_, Window>, text: &str) {
-    harness.run_steps(90);
-    harness.event(egui::Event::Paste(text.to_owned()));
-    harness.run_steps(3);
-}
-
-#[test]
-fn a_sphere_is_copied_and_pasted_as_text_of_a_scene_file() {
-    let mut harness = opened();
-    let (before, metal) = (spheres(&harness), metal_sphere(&harness));
-    select(&mut harness, metal);
-    let text = copied(&mut harness);
-    assert!(text.starts_with("[[spheres]]"), "{text}");
-    paste(&mut harness, &text);
-    let after = spheres(&harness);
-    assert_eq!((after.len(), harness.state().selected()), (before.len() + 1, Some(before.len())));
-    let (old, new) = (after[metal], after[before.len()]);
-    assert_eq!((new.radius, new.material), (old.radius, old.material));
-    assert!(new.center.distance(old.center) > 2.0 * old.radius, "beside it, where it is seen");
-
-    // Several at once, or a whole scene file, elsewhere.
-    let scene = file::to_toml(&harness.state().shown_document().recipe());
-    send(&mut harness, Command::NewScene);
-    paste(&mut harness, &format!("{text}\n{}", text.replace("radius = 0.5", "radius = 0.25")));
-    assert_eq!(spheres(&harness).len(), 4);
-    assert_eq!(spheres(&harness)[2], weekender::scene::Sphere { material: 2, ..old });
-    paste(&mut harness, &scene);
-    assert_eq!(spheres(&harness).len(), 4 + after.len());
-    send(&mut harness, Command::Undo);
-    send(&mut harness, Command::Undo);
-    assert_eq!(spheres(&harness).len(), 2);
-    // Copied from a scene file by hand.
-    let named = "[[spheres]]\ncenter = [2.5, 1.0, 0.0]\nradius = 1.0\nmaterial = \"ball\"\n";
-    paste(&mut harness, named);
-    assert_eq!(spheres(&harness)[2].material, 1);
-    paste(
-        &mut harness,
-        &format!("[materials]\nball = {{ kind = \"dielectric\", refraction_index = 1.5 }}\n{named}"),
-    );
-    assert_eq!(spheres(&harness)[3].material, 2);
-    send(&mut harness, Command::Undo);
-    send(&mut harness, Command::Undo);
-
-    for (text, reason) in [
-        ("a shopping list", "is not a sphere"),
-        ("[[spheres]]\ncenter = [0.0, 0.0]\n", "three numbers"),
-        (&text.replace("radius = ", "radius = -0.0 #"), "radius"),
-        ("[[spheres]]\ncenter = [0.0, 0.0, 0.0]\nradius = 1.0\nmaterial = \"none\"\n", "\"none\""),
-    ] {
-        paste(&mut harness, text);
-        let told = harness.state().messages().pop().unwrap_or_default();
-        assert!(told.starts_with("Not pasted: ") && told.contains(reason), "{told}");
-        assert_eq!(spheres(&harness).len(), 2);
-        harness.run_steps(2);
-    }
-}
-
-#[test]
-fn a_field_of_text_pastes_for_itself() {
-    let mut harness = opened();
-    let metal = metal_sphere(&harness);
-    select(&mut harness, metal);
-    let (text, count) = (copied(&mut harness), spheres(&harness).len());
-    send(&mut harness, Command::Field("Scene"));
-    harness.run_steps(20);
-    control(&harness, "Find a sphere").click();
-    harness.run_steps(2);
-    assert_eq!(copied(&mut harness), "");
-    paste(&mut harness, &text);
-    assert_eq!(spheres(&harness).len(), count);
 }

@@ -169,10 +169,8 @@ table! {
     ResetAll "Reset everything", "Returns to the stage as it is in the book; Undo brings your changes back",
         needs(|f| f.document().is_changed(), "This is the stage as it is in the book"),
         also("original lost back");
-    Copy "Copy", "Copies the selected sphere as text of a scene file; if none is selected, the picture",
-        keys(CTRL, Key::C), line(), needs(is_live, KEPT_IS_SHOWN), also("clipboard toml sphere picture");
-    Paste "Paste", "Adds the spheres of the copied text of a scene file", keys(CTRL, Key::V),
-        off(|f| f.no_rays().map(str::to_owned)), also("clipboard toml insert sphere");
+    Copy "Copy picture", "Copies the picture at full size", keys(CTRL, Key::C), line(),
+        needs(is_live, KEPT_IS_SHOWN), also("clipboard");
     AddSphere "Add a sphere", "Puts a sphere where the pointer is", key(Key::Insert), line(),
         off(|f| f.no_rays().map(str::to_owned)), also("new ball");
     DuplicateSphere "Duplicate the sphere", "Puts a copy beside the selected sphere", keys(CTRL, Key::D),
@@ -269,7 +267,7 @@ table! {
     Help "Keys and mouse", "All keys, and what the mouse does", key(Key::F1), also("shortcuts keyboard help");
     Companion "Companion", "Opens the page that explains the book, at this stage", also("web read explain");
     Palette "Find a command…", "Type what you want to do", keys(CTRL, Key::P), also("palette search");
-    About "About Weekender", "Version, licences, folder of the log, and how to report a fault",
+    About "About Weekender", "Version, licences, and how to report a fault",
         also("version licence report bug");
 
     [None]
@@ -437,7 +435,6 @@ impl Snapshot {
         let named = match command {
             Command::Undo => self.undo.map(|change| format!("Undo: {change}")),
             Command::Redo => self.redo.map(|change| format!("Redo: {change}")),
-            Command::Copy if self.model.selected.is_some() => Some("Copy the sphere".to_owned()),
             Command::CompareWith(partner) => Some(self.model.partner_name(partner)),
             Command::Recent(_) => {
                 self.path(command).and_then(Path::file_name).map(|name| name.display().to_string())

@@ -2,11 +2,10 @@
 
 use super::outcome::Outcome;
 use crate::app::commands::Snapshot;
-use crate::app::model::{adapter, file_url};
+use crate::app::model::adapter;
 use crate::app::toolkit::widgets::{Header, fold, hint, tip};
-use crate::system::files::state_directory;
 use crate::system::journal::kept_text;
-use eframe::egui::{self, OpenUrl, RichText, ScrollArea, Ui};
+use eframe::egui::{RichText, ScrollArea, Ui};
 
 const LICENCES: &str = concat!(
     "Weekender is free under the MIT or the Apache 2.0 licence, as you choose. Those of the libraries are in the file \
@@ -26,12 +25,6 @@ pub(super) fn ui(ui: &mut Ui, snapshot: &Snapshot) -> Outcome {
     });
     let mut is_closed = false;
     ui.horizontal_wrapped(|ui| {
-        let folder = state_directory();
-        let button = ui.add_enabled(folder.is_some(), egui::Button::new("Open the log’s folder"));
-        if let Some(folder) = folder.filter(|_| button.clicked()) {
-            let _ = std::fs::create_dir_all(&folder);
-            ui.ctx().open_url(OpenUrl::new_tab(file_url(&folder)));
-        }
         let copy = ui.button("Copy for a report");
         let help = "Version, processor, graphics card and log, without names of your files";
         if tip(ui, copy, help, None).clicked() {

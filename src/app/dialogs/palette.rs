@@ -15,7 +15,7 @@ const USUAL: [Command; 5] =
 
 /// Fields of the left panel that are found by other words, too.
 const FIELDS: [(&str, &str); 5] = [
-    ("Scene", "all spheres list find select objects outliner sky colours background light gradient"),
+    ("Scene", "all spheres list select objects outliner sky colours background light gradient"),
     ("Field of view", "fov angle zoom lens"),
     ("Defocus angle", "blur defocus depth of field dof aperture bokeh"),
     ("Focus distance", "focus sharp"),
@@ -161,7 +161,7 @@ mod tests {
             ("save as", Command::Save),
             ("new", Command::NewScene),
             ("sky colours", Command::Field("Scene")),
-            ("find sphere", Command::Field("Scene")),
+            ("list spheres", Command::Field("Scene")),
             ("animation", Command::SaveAnimation),
             ("video", Command::SaveAnimation),
             ("turntable", Command::SaveAnimation),

@@ -21,7 +21,6 @@ mod view;
 mod wish;
 
 pub use checked::CheckedScene;
-pub use companion::file_url;
 pub use device::{Device, DeviceOptions, adapter, best_isa};
 pub use document::Document;
 pub use edit::{Body, Edit, kind_word};

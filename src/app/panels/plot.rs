@@ -36,7 +36,7 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
         ui.scope_builder(left, |ui| race.ui(ui, cx));
     }
     let right = UiBuilder::new().max_rect(room.with_min_x(room.left() + width));
-    ui.scope_builder(right, |ui| plot(ui, cx, drawn));
+    ui.scope_builder(right, |ui| plot(ui, drawn));
 }
 
 /// Width of the numbers beside the plot, points.
@@ -113,16 +113,16 @@ impl Drawn {
     fn of(ui: &Ui, cx: &Snapshot) -> Self {
         let (status, goal) = (&cx.status, cx.document().stop.noise);
         let &theme::Colours { third, fourth: of_other, weak, .. } = theme::colours(ui);
-        let style = |backend: &str| style(ui, backend);
-        let mut drawn: Vec<Curve> = Vec::new();
-        for (backend, points) in curves(status) {
-            drawn.push((style(backend).0, style(backend).1.to_owned(), points));
-        }
+        let own = curves(status).into_iter().map(|(backend, points)| {
+            let (colour, name) = style(ui, backend);
+            (colour, name.to_owned(), points)
+        });
+        let mut drawn: Vec<Curve> = own.collect();
         if let Some(other) = &cx.other {
             let is_device = cx.model.other_device().is_some();
             let [[_, name], _] = cx.model.side_names();
             for (backend, points) in curves(other) {
-                drawn.push((if is_device { style(backend).0 } else { of_other }, name.clone(), points));
+                drawn.push((if is_device { style(ui, backend).0 } else { of_other }, name.clone(), points));
             }
         }
         let now = points(status).last().map(at);
@@ -148,8 +148,7 @@ impl Drawn {
     }
 }
 
-fn plot(ui: &mut Ui, cx: &Snapshot, Drawn { curves, expected, goal }: Drawn) {
-    let status = &cx.status;
+fn plot(ui: &mut Ui, Drawn { curves, expected, goal }: Drawn) {
     let axis = |hints: AxisHints<'static>, name: &str| {
         hints.label(egui::RichText::new(name).small()).formatter(|mark, _| power(mark.value))
     };
@@ -171,13 +170,8 @@ fn plot(ui: &mut Ui, cx: &Snapshot, Drawn { curves, expected, goal }: Drawn) {
         .label_formatter(|hover| {
             // Beside the curves there is nothing to tell.
             let HoverPosition::NearDataPoint { position: place, .. } = hover else { return None };
-            let place = [place.x, place.y];
-            let other = cx.other.iter().flat_map(|other| &other.history);
-            let point = status.history.iter().chain(other).find(|point| of_history(point) == place);
-            let samples = point
-                .map_or_else(String::new, |point| format!("{}\n", samples_words(point.samples_per_pixel)));
-            let [seconds, error] = place.map(|power| compact(10_f64.powf(power)));
-            Some(format!("{samples}{seconds} s\nerror {error} %"))
+            let [seconds, error] = [place.x, place.y].map(|power| compact(10_f64.powf(power)));
+            Some(format!("{seconds} s\nerror {error} %"))
         });
     plot.show(ui, |plot| {
         if let Some((colour, name, height)) = goal {

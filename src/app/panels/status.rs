@@ -24,9 +24,8 @@ const READ_SECONDS: f64 = 5.0;
 const ERROR_HELP: &str = "How far a pixel usually is from the finished picture, in per cent of white; estimated from \
                           the two halves of the samples";
 
-const TERMS: &str = "A path is one random way of light, followed back from the camera ray by ray. A lane is one of the \
-                     places in a processor core that trace paths side by side. Error is the usual distance from the \
-                     finished picture, in per cent of white.";
+const TERMS: &str = "A path is one random way of light, followed back from the camera ray by ray. Error is the usual \
+                     distance from the finished picture, in per cent of white.";
 
 /// Draws the bar. `offered` is the size at which a scaled picture can be rendered.
 pub fn ui(ui: &mut Ui, cx: &PanelContext, offered: Option<[u32; 2]>) {
@@ -219,7 +218,7 @@ fn details(ui: &mut Ui, cx: &PanelContext) {
                 small(ui, TERMS);
             });
         });
-    tip(ui, response, "Speed, lanes, memory, and what these mean", None);
+    tip(ui, response, "Speed, memory, and what these mean", None);
 }
 
 fn figures(snapshot: &Snapshot) -> Vec<(&'static str, String)> {
@@ -229,16 +228,12 @@ fn figures(snapshot: &Snapshot) -> Vec<(&'static str, String)> {
     // A film that was opened does not say how its samples were traced.
     let has_paths = status.stats.paths > 0;
     let rays = status.stats.rays as f64 / status.stats.paths.max(1) as f64;
-    let on_cpu = status.contributions.iter().rev().find(|part| part.backend.name == "cpu");
-    let lanes = status.lane_occupancy().zip(on_cpu);
-    let lanes = lanes.map(|(share, part)| format!("{}, {:.0} % at work", part.backend.lanes, 100.0 * share));
     let settings = snapshot.document().settings;
     let bytes = Film::bytes(settings.width, settings.height);
     vec![
         ("Speed", if has_paths { format!("{speed:.1} million paths per second") } else { unknown() }),
         ("Rays per path", if has_paths { format!("{rays:.1} on average") } else { unknown() }),
         ("Processor", processors(status).unwrap_or_else(unknown)),
-        ("Lanes of the CPU", lanes.unwrap_or_else(unknown)),
         ("Memory of this picture", format!("{:.1} MB", bytes as f64 / 1e6)),
         (
             "Kept films",

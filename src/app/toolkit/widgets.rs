@@ -7,7 +7,7 @@ use eframe::egui::collapsing_header::{CollapsingState, paint_default_icon};
 use eframe::egui::{
     self, Align, Atom, Button, Color32, ComboBox, CornerRadius, DragValue, Id, IntoAtoms, Key, Label, Layout,
     Rect, RectAlign, Response, RichText, Role, Sense, Sides, Slider, SliderClamping, Stroke, StrokeKind,
-    Tooltip, Ui, UiBuilder, Vec2, Widget, WidgetInfo, WidgetText, pos2, response::Flags, vec2,
+    Tooltip, Ui, UiBuilder, Vec2, Widget, WidgetInfo, pos2, response::Flags, vec2,
 };
 use glam::DVec3;
 use std::cell::Cell;
@@ -87,26 +87,17 @@ pub fn tip(ui: &Ui, response: Response, help: &str, disabled_reason: Option<&str
 }
 
 fn show_tip(ui: &Ui, response: &Response, text: &str) {
-    const BESIDE: &[RectAlign] =
-        &[RectAlign::RIGHT_START, RectAlign::LEFT_START, RectAlign::RIGHT_END, RectAlign::LEFT_END];
+    const BESIDE: [RectAlign; 4] =
+        [RectAlign::RIGHT_START, RectAlign::LEFT_START, RectAlign::RIGHT_END, RectAlign::LEFT_END];
     /// Anything narrower is a column, points.
     const COLUMN: f32 = 450.0;
-    const BELOW: &[RectAlign] =
-        &[RectAlign::BOTTOM_START, RectAlign::BOTTOM_END, RectAlign::TOP_START, RectAlign::TOP_END];
-    let clip = ui.clip_rect();
-    let is_menu = ui.layout().horizontal_justify();
-    let is_panel = !is_menu && clip.width() < COLUMN;
-    let around = match is_panel {
-        true => Rect::from_x_y_ranges(clip.x_range(), response.rect.y_range()),
-        false => response.rect,
-    };
-    let aligns = if is_panel || is_menu { BESIDE } else { BELOW };
-    let mut tooltip = Tooltip::for_widget(response);
-    tooltip.popup = tooltip.popup.anchor(around).align(aligns[0]).align_alternatives(aligns).gap(8.0);
-    if is_panel || is_menu {
+    let (clip, mut tooltip) = (ui.clip_rect(), Tooltip::for_widget(response));
+    if ui.layout().horizontal_justify() || clip.width() < COLUMN {
+        let around = Rect::from_x_y_ranges(clip.x_range(), response.rect.y_range());
         // As wide as there is room beside it.
         let screen = ui.ctx().content_rect();
         let room = (screen.right() - around.right()).max(around.left() - screen.left()) - 32.0;
+        tooltip.popup = tooltip.popup.anchor(around).align(BESIDE[0]).align_alternatives(&BESIDE).gap(8.0);
         tooltip.popup = tooltip.popup.width(room.clamp(120.0, ui.spacing().tooltip_width));
     }
     tooltip.show(|ui| ui.label(text));
@@ -154,21 +145,11 @@ pub fn hint(ui: &mut Ui, text: &str) -> Response {
 }
 
 /// The button to press next. There is at most one in the window.
-pub fn primary(text: impl Into<WidgetText>) -> impl Widget {
+pub fn primary(text: impl Into<String>) -> impl Widget {
     move |ui: &mut Ui| {
-        let (colours, is_dark) = (theme::colours(ui), ui.visuals().dark_mode);
-        let towards = if is_dark { Color32::WHITE } else { Color32::BLACK };
-        ui.scope(|ui| {
-            let widgets = &mut ui.visuals_mut().widgets;
-            for (widget, share) in
-                [(&mut widgets.inactive, 0.0), (&mut widgets.hovered, 0.08), (&mut widgets.active, 0.16)]
-            {
-                widget.weak_bg_fill = colours.accent.lerp_to_gamma(towards, share);
-                widget.fg_stroke.color = colours.on_accent;
-            }
-            ui.add(Button::new(text.into()))
-        })
-        .inner
+        let colours = theme::colours(ui);
+        let text = RichText::new(text).color(colours.on_accent);
+        ui.add(Button::new(text).fill(colours.accent))
     }
 }
 

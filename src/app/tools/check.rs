@@ -334,32 +334,15 @@ fn verdict(ui: &mut Ui, answer: &Answer) {
     ui.add(Label::new(text).wrap());
 }
 
-/// What to change: code stands between backticks, and long code on a line of its own.
+/// What to change: code stands between backticks.
 fn change(ui: &mut Ui, remedy: &str) {
-    const LONG: usize = 16;
     ui.add_space(4.0);
     small(ui, "What to change");
     ui.add_space(-4.0);
-    let colours = theme::colours(ui);
-    let mut words = LayoutJob::default();
-    let parts: Vec<&str> = remedy.split('`').collect();
-    let is_long = |index: usize| index % 2 == 1 && parts.get(index).is_some_and(|code| code.len() > LONG);
-    for (index, part) in parts.iter().enumerate() {
-        let text = match index % 2 {
-            1 if is_long(index) => RichText::new(format!("{part}\n")).monospace().color(colours.accent),
-            1 => RichText::new(*part).monospace(),
-            // A line of code needs no comma after it.
-            _ => {
-                let before = if index > 0 && is_long(index - 1) {
-                    part.trim_start_matches([',', ';', ' '])
-                } else {
-                    part
-                };
-                let end = if is_long(index + 1) && !before.is_empty() { "\n" } else { "" };
-                RichText::new(format!("{}{end}", if end.is_empty() { before } else { before.trim_end() }))
-            }
-        };
-        let text = text.line_height(Some(20.0));
+    let (colours, mut words) = (theme::colours(ui), LayoutJob::default());
+    for (index, part) in remedy.split('`').enumerate() {
+        let text = RichText::new(part).line_height(Some(20.0));
+        let text = if index % 2 == 1 { text.monospace().color(colours.accent) } else { text };
         text.append_to(&mut words, ui.style(), FontSelection::Default, Align::LEFT);
     }
     ui.add(Label::new(words).wrap());

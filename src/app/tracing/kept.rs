@@ -149,20 +149,12 @@ fn compared(sides: &[Picture; 2], has_same_samples: bool) -> Result<Verdict, Str
             let blocks = &comparison.test.blocks;
             let clear = blocks.iter().filter(|block| block.largest() > CLEAR).count();
             let share = (100 * clear).div_ceil(blocks.len().max(1));
-            let worst = blocks.iter().max_by(|a, b| a.largest().total_cmp(&b.largest()));
-            let place = worst.map_or_else(String::new, |block| {
-                format!(", most around column {}, row {}", middle(&block.x), middle(&block.y))
-            });
             let words = match clear {
                 0 => "No block differs clearly alone, but all of them together do.".to_owned(),
-                _ => format!("{share} % of the blocks differ clearly{place}."),
+                _ => format!("{share} % of the blocks differ clearly."),
             };
             ("More than noise.", words)
         }
     };
     Ok(Verdict { is_equal: Some(is_equal), headline, words })
-}
-
-fn middle(range: &std::ops::Range<u32>) -> u32 {
-    u32::midpoint(range.start, range.end)
 }

@@ -79,19 +79,6 @@ fn take_copies(input: &mut egui::InputState) -> usize {
     before - input.events.len()
 }
 
-/// Takes the text that is pasted, unless a field of text takes it.
-pub fn take_pasted(context: &egui::Context) -> Option<String> {
-    if context.text_edit_focused() {
-        return None;
-    }
-    let pasted = |event: &egui::Event| match event {
-        egui::Event::Paste(text) => Some(text.clone()),
-        egui::Event::PasteImage(_) => Some(String::new()),
-        _ => None,
-    };
-    context.input(|input| input.events.iter().find_map(pasted))
-}
-
 /// Moves the camera while keys are held. Returns whether it moved.
 pub fn fly(context: &egui::Context, camera: &mut Camera) -> bool {
     let taken = taken_keys(context);

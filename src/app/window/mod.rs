@@ -194,10 +194,6 @@ impl Window {
         if self.shell.dialogs.is_open() {
             return;
         }
-        if let Some(text) = input::take_pasted(context) {
-            self.shell.pasted = Some(text);
-            self.send(Command::Paste);
-        }
         let is_presenting = self.model.presentation.is_some();
         if !input::take_keys(context, is_presenting, &mut self.commands) {
             return;

@@ -19,11 +19,11 @@ use crate::app::viewport::sight::Sight;
 use crate::batch::{BatchOptions, FrameNames, FramesOptions, Output, Studio};
 use crate::job::output::OutputFormat;
 use crate::job::recipe::Recipe;
-use crate::job::recipe::file::sphere_to_toml;
 use crate::job::saved::SavedFilm;
 use crate::stages::{BOOK_URL, Stage};
 use crate::system::terminal::ProgressChoice;
 use eframe::egui::{self, Context, ViewportCommand};
+use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -63,21 +63,7 @@ impl Window {
             C::SaveAs(format) => self.ask_save(What::Picture(format)),
             C::SaveAnimation => self.ask_save(What::Animation),
             C::Recent(place) => self.open_recent(context, place),
-            C::Copy => match Selected::of(model) {
-                Some(Selected { body: Body { center, radius, material }, .. }) => {
-                    context.copy_text(sphere_to_toml(center, radius, &material));
-                    shell.toasts.good("Copied the sphere as text; paste it here or in a scene file");
-                }
-                None => files.copy.make(&model.document, ()),
-            },
-            C::Paste => match shell.pasted.take() {
-                Some(text) => match spheres::read(&text, document) {
-                    Ok(bodies) => self.add(bodies),
-                    Err(reason) => shell.toasts.good(format!("Not pasted: {reason}")),
-                },
-                // The text comes with a later frame.
-                None => context.send_viewport_cmd(ViewportCommand::RequestPaste),
-            },
+            C::Copy => files.copy.make(document, ()),
             C::Quit => context.send_viewport_cmd(ViewportCommand::Close),
             C::StopSaving => files.stop_saving(),
             C::DeleteFilms => self.store.delete(None),
@@ -86,10 +72,7 @@ impl Window {
             C::Redo => self.redo(),
             C::ResetAll => self.change(|window| window.model.document.reset()),
             C::AddSphere => self.add_sphere(),
-            C::DuplicateSphere => {
-                let bodies = Selected::of(model).map(|selected| selected.body).into_iter().collect();
-                self.add(bodies);
-            }
+            C::DuplicateSphere => self.duplicate_sphere(),
             C::DeleteSphere => {
                 model.selected.into_iter().for_each(|sphere| self.edit(&[Edit::Delete(sphere)]))
             }
@@ -392,10 +375,15 @@ impl Window {
         self.edit(&[Edit::Add(body)]);
     }
 
-    /// Adds copies of spheres, beside those that they would hide.
-    fn add(&mut self, bodies: Vec<Body>) {
-        let bodies = spheres::beside(self.document().scene(), &self.document().camera, bodies);
-        self.edit(&bodies.into_iter().map(Edit::Add).collect::<Vec<_>>());
+    /// Adds a copy of the selected sphere, to the right of the camera.
+    fn duplicate_sphere(&mut self) {
+        let Some(Selected { body, .. }) = Selected::of(&self.model) else { return };
+        let step = 2.2 * body.radius.abs() * self.document().camera.basis().u;
+        let spheres = &self.document().scene().spheres;
+        let is_taken = |center: &DVec3| spheres.iter().any(|other| other.center == *center);
+        let center =
+            (1..).map(|steps| body.center + f64::from(steps) * step).find(|center| !is_taken(center));
+        self.edit(&[Edit::Add(Body { center: center.unwrap_or(body.center), ..body })]);
     }
 
     pub(super) fn focus_sphere(&mut self) {

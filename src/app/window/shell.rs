@@ -11,8 +11,6 @@ pub struct Shell {
     pub toasts: Toasts,
     /// The command that was carried out last.
     pub performed: Option<crate::app::commands::Command>,
-    /// The text that is pasted.
-    pub pasted: Option<String>,
     /// Something had the keyboard's focus, a popup or a dialog was open, in the frame before.
     pub had_focus: bool,
     /// The panel that F6 goes to: the bar, the left or the right one.

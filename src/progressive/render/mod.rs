@@ -340,8 +340,7 @@ impl Render {
         self.pictured_samples = Some(samples);
         let transfer = self.job.rules().transfer;
         // Previews are smoothed; heat maps show the film as it is.
-        let is_smooth =
-            self.plan.preview.is_some() && matches!(view, View::Picture | View::Exposed(_));
+        let is_smooth = self.plan.preview.is_some() && matches!(view, View::Picture | View::Exposed(_));
         let rgb8 = if is_smooth {
             view.resolve(&self.film.smoothed(), transfer)
         } else {

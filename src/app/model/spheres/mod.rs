@@ -4,7 +4,6 @@ pub mod grip;
 pub mod silhouette;
 
 use crate::app::model::{Body, CheckedScene, Document, Edit, Model};
-use crate::job::recipe::{Recipe, file};
 use crate::job::render::TRACING_BYTES_PER_SPHERE;
 use crate::scene::{Camera, Material, Scene, Sphere};
 use crate::system::memory;
@@ -63,39 +62,6 @@ pub fn edit(model: &mut Model, edits: &[Edit]) -> Result<(), String> {
     };
     (model.document.checked, model.selected) = (checked, selected);
     Ok(())
-}
-
-/// The spheres of a text: of `[[spheres]]` alone, which may name materials of the document, or of a whole scene file.
-///
-/// # Errors
-/// Why there are none, in words.
-pub fn read(text: &str, document: &Document) -> Result<Vec<Body>, String> {
-    if !text.contains("spheres") {
-        return Err("the copied text is not a sphere; select one and press Ctrl+C".to_owned());
-    }
-    let mut whole = text.to_owned();
-    if !text.contains("[camera]") {
-        let mut scene = Scene { spheres: Vec::new(), ..document.scene().clone() };
-        if text.contains("[materials") {
-            scene.materials.clear();
-        }
-        let rest = file::to_toml(&Recipe { scene: Arc::new(scene), ..document.recipe() });
-        whole = format!("{text}\n\n{rest}");
-    }
-    let recipe = file::parse(&whole, "the copied text").map_err(|error| error.to_string())?;
-    Ok((0..recipe.scene.spheres.len()).filter_map(|sphere| Body::of(&recipe.scene, sphere)).collect())
-}
-
-/// The spheres beside those of `scene`, if the first would hide one: moved to the right of the camera.
-pub fn beside(scene: &Scene, camera: &Camera, mut bodies: Vec<Body>) -> Vec<Body> {
-    let Some(first) = bodies.first().copied() else { return bodies };
-    let least = bodies.iter().map(|body| body.radius.abs()).fold(f64::INFINITY, f64::min);
-    let step = 2.2 * least * camera.basis().u;
-    let is_taken =
-        |center| scene.spheres.iter().any(|other| other.center == center && other.radius == first.radius);
-    let by = (0..).map(|steps| f64::from(steps) * step).find(|by| !is_taken(first.center + *by));
-    bodies.iter_mut().for_each(|body| body.center += by.unwrap_or_default());
-    bodies
 }
 
 /// The sphere after or before the selected one, in the order of the scene; the first or last if none is selected.

@@ -38,4 +38,4 @@ mod write;
 
 pub use read::{load, parse};
 pub use table::inputs;
-pub use write::{sphere_to_toml, to_picture_toml, to_toml};
+pub use write::{to_picture_toml, to_toml};

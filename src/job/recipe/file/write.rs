@@ -114,12 +114,6 @@ fn inline(material: &Material) -> String {
     format!("{{ kind = \"{}\", {keys} }}", material.kind())
 }
 
-/// A sphere and its material as a table that any scene file can end with.
-pub fn sphere_to_toml(center: DVec3, radius: f64, material: &Material) -> String {
-    let (center, radius, material) = (vector(center), number(radius), inline(material));
-    format!("[[spheres]]\ncenter = {center}\nradius = {radius}\nmaterial = {material}\n")
-}
-
 fn vector(v: DVec3) -> String {
     format!("[{}, {}, {}]", number(v.x), number(v.y), number(v.z))
 }
