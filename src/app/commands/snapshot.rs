@@ -47,8 +47,6 @@ pub struct Snapshot {
     pub is_moving: bool,
     /// The render began during the current pause, and stops early.
     pub is_held: bool,
-    /// Only sky and ground are in sight, unlike from the stage's camera.
-    pub is_lost: bool,
     /// Whether the pointer is over the traced picture, or was so last.
     pub has_pixel: bool,
     /// Whether there is a list of paths.

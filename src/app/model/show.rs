@@ -54,7 +54,7 @@ impl Show {
                 ["Rays per path", "How many rays a path has: where the time goes", "view depth bounces"]
             }
             Show::Error => [
-                "Noise",
+                "Error",
                 "How uncertain each pixel still is (standard error)",
                 "view grain quality spp samples",
             ],

@@ -2,7 +2,6 @@
 
 use super::plot::prediction;
 use crate::app::commands::{Command, PanelContext, Snapshot};
-use crate::app::model::spheres;
 use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{command_button, compact, samples_words, small, tip};
 use crate::denoise::DenoisedError;
@@ -54,14 +53,7 @@ fn sentence_ui(ui: &mut Ui, cx: &PanelContext, offered: Option<[u32; 2]>) {
     let doubt = cx.status.doubt.as_ref().map_or_else(String::new, |doubt| format!(". {doubt}"));
     tip(ui, response, &format!("{ERROR_HELP}{doubt}"), None);
     left_out(ui, cx.status.rejected_samples);
-    let is_inside = spheres::inside(cx.document()) && cx.document().case().is_none();
-    if is_inside || cx.is_lost {
-        ui.label(match is_inside {
-            true => "The camera is inside a sphere.",
-            false => "Nothing but sky or ground is in sight.",
-        });
-        command_button(ui, cx, Command::Home, "Home");
-    } else if let Some([width, height]) = offered {
+    if let Some([width, height]) = offered {
         ui.label("This picture is scaled.");
         let name = format!("Render at {width} × {height}");
         command_button(ui, cx, Command::RenderAtSize, &name);

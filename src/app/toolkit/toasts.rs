@@ -26,8 +26,6 @@ struct Toast {
     offers: Vec<Command>,
     /// The document in which Undo and Redo do what it offers, once that is known.
     of: Option<Document>,
-    /// Its lower edge above that of the picture, and its height, points. It never moves.
-    place: Option<(f32, f32)>,
 }
 
 impl Toast {
@@ -127,10 +125,10 @@ impl Toasts {
 
     fn add(&mut self, text: String, (is_error, stays): (bool, bool), offers: &[Command]) {
         let (since, offers) = (Instant::now(), offers.to_vec());
-        let mut toast = Toast { text, is_error, since, stays, offers, of: None, place: None };
+        let toast = Toast { text, is_error, since, stays, offers, of: None };
         if let Some(index) = self.0.iter().position(|other| toast.is_like(other) || toast.text == other.text)
         {
-            toast.place = self.0.remove(index).place;
+            self.0.remove(index);
         }
         self.0.push(toast);
     }
@@ -146,33 +144,19 @@ impl Toasts {
         if let Some(first) = self.0.iter().filter_map(Toast::left).min() {
             ui.ctx().request_repaint_after(first);
         }
-        let mut closed = None;
         let hidden = self.0.len().saturating_sub(SHOWN);
-        self.0[..hidden].iter_mut().for_each(|toast| toast.place = None);
-        for index in hidden..self.0.len() {
-            let ends = self.0.iter().filter_map(|toast| toast.place).map(|(at, height)| at + height + 8.0);
-            let free = ends.fold(16.0, f32::max);
-            let toast = &mut self.0[index];
-            let at = toast.place.map_or(free, |(at, _)| at);
-            let shown = egui::Area::new(Id::unique(("toast", &toast.text)))
-                .order(egui::Order::Foreground)
-                .pivot(Align2::CENTER_BOTTOM)
-                .fixed_pos(over.center_bottom() - vec2(0.0, at))
-                .constrain_to(over)
-                .show(ui.ctx(), |ui| {
-                    let width = WIDTH.min(over.width() - 16.0) - 26.0;
-                    theme::float_frame(ui)
-                        .show(ui, |ui| {
-                            ui.set_width(width);
-                            toast.ui(ui, commands)
-                        })
-                        .inner
-                });
-            toast.place = Some((at, shown.response.rect.height()));
-            if shown.inner {
-                closed = Some(index);
-            }
-        }
+        let area = egui::Area::new(Id::unique("toasts")).order(egui::Order::Foreground);
+        let area = area.pivot(Align2::CENTER_BOTTOM).fixed_pos(over.center_bottom() - vec2(0.0, 16.0));
+        let shown = area.constrain_to(over).show(ui.ctx(), |ui| {
+            ui.set_width(WIDTH.min(over.width() - 16.0) - 26.0);
+            let frame = theme::float_frame(ui);
+            let mut toasts = self.0.iter().enumerate().skip(hidden);
+            // One that was closed hides those after it for this frame.
+            toasts
+                .find(|(_, toast)| frame.show(ui, |ui| toast.ui(ui, commands)).inner)
+                .map(|(index, _)| index)
+        });
+        let closed = shown.inner;
         if let Some(index) = closed {
             self.0.remove(index);
         }

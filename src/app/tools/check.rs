@@ -214,7 +214,9 @@ impl Check {
                     ui.multiply_opacity(0.45);
                 }
                 of_section = shown.ui(ui, cx, self.chosen, self.place);
-                hint(ui, &format!("{} is checked again whenever it changes.", self.name()));
+                if shown.compared.is_some() {
+                    hint(ui, &format!("{} is checked again whenever it changes.", self.name()));
+                }
             }
         });
         if let Some((path, stage)) = self.path.clone().zip(of_section) {
@@ -281,7 +283,8 @@ impl Checked {
                 command_button(ui, cx, Command::CompareWith(Partner::Mine), "Show it beside ours");
             }
         }
-        let of_section = section(ui, answer, chosen);
+        let is_picture = answer.kind != AnswerKind::CannotCheck;
+        let of_section = if is_picture { section(ui, answer, chosen) } else { None };
         if !answer.evidence.is_empty() {
             ui.add_space(4.0);
             panel_line(ui);

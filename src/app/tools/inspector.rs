@@ -110,8 +110,12 @@ impl Inspector {
         }
         if main.is_full(document) {
             let (key, transfer) = ((at, subject.id(), main.shown_samples()), document.rules().transfer);
-            let look = move |film: &Film| Some(((at, run), Pixel::of(film, at, transfer)?));
-            subject.ask(context, &mut self.mine, key, look);
+            if let Some(answer) = self.mine.ask(context, key) {
+                subject.inspect(move |film| {
+                    let pixel = Pixel::of(film, at, transfer);
+                    pixel.into_iter().for_each(|pixel| answer.give(Ok(((at, run), pixel))));
+                });
+            }
         }
     }
 

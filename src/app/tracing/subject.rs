@@ -3,7 +3,7 @@
 
 use super::Tracing;
 use crate::app::model::{Document, Found, ViewState};
-use crate::app::toolkit::{Answers, Query};
+use crate::app::toolkit::Answers;
 use crate::denoise::{Denoised, Halves, denoise};
 use crate::film::Film;
 use crate::progressive::Phase;
@@ -42,11 +42,6 @@ impl<'a> Subject<'a> {
         (self.tracing.main.status().run, self.denoised.map(|denoised| denoised.film.sample_count()))
     }
 
-    /// Samples per pixel of the film.
-    pub fn samples(&self) -> u64 {
-        self.tracing.main.status().samples_per_pixel
-    }
-
     /// Whether it is the film of its document at full size, and has samples.
     pub fn has_samples(&self) -> bool {
         self.tracing.main.has_samples(self.document)
@@ -57,19 +52,6 @@ impl<'a> Subject<'a> {
         match self.denoised.map(Arc::clone) {
             Some(denoised) => self.tracing.main.inspect(move |_| look(&denoised.film)),
             None => self.tracing.main.inspect(look),
-        }
-    }
-
-    /// Asks `query` about `key`. `look` finds the optional answer in the film or its denoised picture.
-    pub fn ask<K: PartialEq, T: Send + 'static>(
-        &self,
-        context: &Context,
-        query: &mut Query<K, T>,
-        key: K,
-        look: impl FnOnce(&Film) -> Option<T> + Send + 'static,
-    ) {
-        if let Some(answer) = query.ask(context, key) {
-            self.inspect(move |film| look(film).into_iter().for_each(|found| answer.give(Ok(found))));
         }
     }
 }

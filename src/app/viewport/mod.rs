@@ -119,7 +119,6 @@ impl Viewport {
         };
         let own = rect.with_min_x(rect.lerp_inside(vec2(left, 0.0)).x);
         self.selection.paint(ui, (rect, own.intersect(room)), &document, cx);
-        self.moving.paint(ui, own.intersect(room), rect, &document);
         self.pointer = response.hover_pos().filter(|at| rect.contains(*at)).map(|at| place_at(rect, at));
         let pixel = |at| self.placement.pixel_at(at, document.size());
         touch.hovered = response.hover_pos().and_then(pixel);

@@ -1,9 +1,9 @@
 //! Moves the camera, or the picture, by drags and the wheel.
 
-use super::placement::{Placement, Touch, place_at, point_at};
+use super::placement::{Placement, Touch, place_at};
 use crate::app::model::{Document, navigation};
 use crate::scene::Camera;
-use eframe::egui::{Color32, CursorIcon, PointerButton, Pos2, Rect, Response, Stroke, Ui, Vec2};
+use eframe::egui::{CursorIcon, PointerButton, Pos2, Response, Ui, Vec2};
 use glam::DVec3;
 
 /// Radians of rotation per point of dragging.
@@ -88,15 +88,5 @@ impl Moving {
             *camera = moved;
             touch.is_move = true;
         }
-    }
-
-    /// Draws the point that the camera turns about.
-    pub fn paint(&self, ui: &Ui, clip: Rect, rect: Rect, document: &Document) {
-        let place = self.pivot.and_then(|pivot| document.camera.place_of(pivot, document.aspect()));
-        let Some(at) = place.map(|place| point_at(rect, place)) else { return };
-        let painter = ui.painter().with_clip_rect(clip);
-        painter.circle_stroke(at, 6.0, Stroke::new(3.0, Color32::from_black_alpha(70)));
-        painter.circle_stroke(at, 6.0, Stroke::new(1.25, Color32::from_white_alpha(150)));
-        painter.circle_filled(at, 1.5, Color32::from_white_alpha(190));
     }
 }

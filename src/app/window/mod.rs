@@ -141,7 +141,6 @@ impl Window {
             has_picture: self.tracing.main.has_picture(self.document()),
             is_moving: self.changes.is_in_gesture,
             is_held: self.tracing.main.is_held(),
-            is_lost: self.display.is_lost && self.model.playing.is_none(),
             has_pixel: self.tools.inspector.hovered.is_some_and(|[x, _]| {
                 !self.model.view.is_other((f64::from(x) + 0.5) / f64::from(self.document().size()[0]))
             }),
@@ -261,15 +260,14 @@ impl Window {
         if self.changes.follow(context, &self.model.document, is_visit) {
             self.model.view.end_look();
         }
-        let is_moving = self.changes.is_moving();
-        if is_moving {
+        if self.changes.is_moving() {
             context.request_repaint_after(Duration::from_millis(40));
         }
         self.leave_useless_views();
         let has_second = self.tracing.follow(context, &self.model, &self.changes);
         self.store.follow(context, &self.model, &self.changes, &mut self.tracing);
         let Window { model, tracing, display, tools, files, shell, .. } = self;
-        display.follow(context, model, is_moving, &mut shell.toasts);
+        display.follow(context, model, &mut shell.toasts);
         let subject = Subject::new(&model.view, &model.document, tracing);
         if let Some(found) = display.denoising.follow(context, &subject, model.view.is_denoised) {
             model.view.denoised = Some(found);

@@ -3,7 +3,7 @@
 pub mod grip;
 pub mod silhouette;
 
-use crate::app::model::{Body, CheckedScene, Document, Edit, Model};
+use crate::app::model::{Body, CheckedScene, Edit, Model};
 use crate::job::render::TRACING_BYTES_PER_SPHERE;
 use crate::scene::{Camera, Material, Scene, Sphere};
 use crate::system::memory;
@@ -72,36 +72,6 @@ pub fn neighbour(scene: &Scene, selected: Option<usize>, is_next: bool) -> Optio
     (count > 0).then(|| (from + step) % count)
 }
 
-/// Whether the camera is inside of a sphere.
-pub fn inside(document: &Document) -> bool {
-    let (spheres, eye) = (&document.scene().spheres, document.camera.look_from);
-    spheres.len() <= MANY
-        && document.no_rays().is_none()
-        && spheres.iter().any(|sphere| clearance(sphere, eye) < 0.0)
-}
-
-/// Whether the camera sees only sky and ground, while the stage's camera sees more.
-pub fn is_lost(document: &Document) -> bool {
-    let home = document.origin.recipe.camera;
-    document.camera != home && sees_nothing(document, &document.camera) && !sees_nothing(document, &home)
-}
-
-/// Whether a grid of rays meets nothing but the sky and the ground that the camera of the stage stands on.
-fn sees_nothing(document: &Document, camera: &Camera) -> bool {
-    /// Share of the distance to its center from which on a sphere looks flat.
-    const FLAT: f64 = 0.9;
-    /// Spheres that all rays may be tested against.
-    const TESTS: f64 = 2e6;
-    let (scene, home) = (document.scene(), document.origin.recipe.camera.look_from);
-    let rays = (TESTS / scene.spheres.len().max(1) as f64).sqrt().clamp(8.0, 32.0) as usize & !1;
-    let is_ground = |sphere: &Sphere| sphere.radius >= FLAT * home.distance(sphere.center);
-    let is_empty = |index: usize| {
-        let place = [index % rays, index / rays].map(|along| (along as f64 + 0.5) / rays as f64);
-        document.pick(camera, place).is_none_or(|pick| is_ground(&scene.spheres[pick.sphere]))
-    };
-    scene.spheres.len() <= MANY && (0..rays * rays).all(is_empty)
-}
-
 /// The opaque ground below the camera.
 pub fn ground<'a>(scene: &'a Scene, camera: &'a Camera) -> impl Iterator<Item = &'a Sphere> {
     let is_opaque = |sphere: &&Sphere| !matches!(scene.material_of(sphere), Material::Dielectric { .. });
@@ -146,32 +116,5 @@ mod tests {
         let walk =
             |is_next| [None, Some(0), Some(1), Some(2)].map(|at| neighbour(&scene, at, is_next).unwrap());
         assert_eq!((walk(true), walk(false)), ([0, 1, 2, 0], [2, 2, 0, 1]));
-    }
-
-    #[test]
-    fn a_camera_in_a_sphere_and_one_that_sees_nothing_are_noticed() {
-        let mut window = window("weekender --stage view-distant --size 16x9 --device cpu");
-        let document = &mut window.model.document;
-        assert!(!inside(document) && !is_lost(document));
-        let away =
-            Camera { look_at: document.camera.look_from + DVec3::new(0.0, 0.5, 9.0), ..document.camera };
-        document.camera = away;
-        assert!(is_lost(document));
-        document.camera.look_from = document.scene().spheres[1].center;
-        assert!(inside(document));
-    }
-
-    /// As the wheel does it: only the ground is left from afar, and balls fill the picture from near by.
-    #[test]
-    fn what_is_in_sight_is_asked_of_the_picture_at_any_distance() {
-        let mut window = window("weekender --stage book --size 16x9 --device cpu");
-        let document = &mut window.model.document;
-        let home = document.camera;
-        let mut away = |by: f64| {
-            let eye = home.look_at + by * (home.look_from - home.look_at);
-            document.camera = Camera { look_from: eye, ..home };
-            is_lost(document)
-        };
-        assert_eq!([100.0, 1.5, 0.5, 0.2].map(&mut away), [true, false, false, false]);
     }
 }
