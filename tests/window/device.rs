@@ -17,7 +17,6 @@ fn another_device_continues_the_film() {
     assert!(status.samples_per_pixel > before);
     let parts: u64 = status.contributions.iter().map(|part| part.samples_per_pixel).sum();
     assert_eq!(parts, status.samples_per_pixel);
-    harness.state_mut().remembered_mut().lanes = Some(1);
     send(&mut harness, Command::Device(Device::Cpu));
     until(&mut harness, "three contributions", |window| window.status().contributions.len() == 3);
     assert_eq!(harness.state().status().run, run);

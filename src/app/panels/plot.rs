@@ -5,7 +5,7 @@ use super::compare;
 use crate::app::commands::{PanelContext, Snapshot};
 use crate::app::model::Device;
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{compact, hint, samples_words, small, swatch};
+use crate::app::toolkit::widgets::{compact, hint, rounded, samples_words, small, swatch};
 use crate::numbers::statistics::fit::{Point, Prediction, predict};
 use crate::progressive::{HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, Status};
 use eframe::egui::{self, Color32, Rangef, Sense, Ui, UiBuilder, Vec2b};
@@ -73,19 +73,19 @@ impl Race {
         ui.spacing_mut().item_spacing.y = 4.0;
         for (device, status) in &self.0 {
             let name = device.label();
-            let speed = compact(two_digits(status.rays_per_second() / 1e6));
+            let speed = two_digits(status.rays_per_second() / 1e6);
             let words = egui::RichText::new(format!("{name}: {speed} million rays per second"));
             ui.label(words.strong().color(style(ui, device.name()).0));
             let error = status.error.map_or_else(String::new, |error| {
-                format!(", error {} %", compact(two_digits(100.0 * error.rmse)))
+                format!(", error {} %", two_digits(100.0 * error.rmse))
             });
-            let seconds = compact(two_digits(status.trace.as_secs_f64()));
+            let seconds = two_digits(status.trace.as_secs_f64());
             small(ui, format!("{} in {seconds} s{error}", samples_words(status.samples_per_pixel)));
         }
         match self.factor() {
             Some((device, factor)) => {
                 let name = device.label();
-                ui.label(format!("{name} is {} times as fast.", compact(two_digits(factor))));
+                ui.label(format!("{name} is {} times as fast.", two_digits(factor)));
             }
             None if self.0[0].1.contributions.len() > 1 => {
                 _ = hint(ui, "Several devices have traced this picture. R starts again, to measure one.");
@@ -133,7 +133,7 @@ impl Drawn {
         });
         let goal = goal.map(|goal| {
             let percent = 100.0 * goal;
-            (weak, format!("goal {} %", compact(two_digits(percent))), percent.log10())
+            (weak, format!("goal {} %", two_digits(percent)), percent.log10())
         });
         Drawn { curves: drawn, expected, goal }
     }
@@ -199,9 +199,9 @@ fn style(ui: &Ui, backend: &str) -> (Color32, &'static str) {
     }
 }
 
-/// Rounds to two significant digits.
-fn two_digits(value: f64) -> f64 {
-    format!("{value:.1e}").parse().unwrap_or(value)
+/// A number with two significant digits.
+fn two_digits(value: f64) -> String {
+    compact(rounded(value, value, 2))
 }
 
 /// Splits a history and the newest error into one curve for each backend; a curve begins where the previous one ends.

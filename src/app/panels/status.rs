@@ -3,12 +3,12 @@
 use super::plot::prediction;
 use crate::app::commands::{Command, PanelContext, Snapshot};
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{command_button, compact, samples_words, small, tip};
+use crate::app::toolkit::widgets::{command_button, compact, rounded, samples_words, small, tip};
 use crate::denoise::DenoisedError;
 use crate::film::Film;
 use crate::job::render::BackendInfo;
 use crate::measure::grouped;
-use crate::progressive::describe::counted;
+use crate::progressive::describe::{counted, seconds as time};
 use crate::progressive::{EndReason, Phase, Status};
 use eframe::egui::{
     self, Align, Button, Id, Label, Layout, Margin, PopupCloseBehavior, RectAlign, Response, RichText, Sides,
@@ -104,12 +104,11 @@ pub fn sentence(snapshot: &Snapshot) -> String {
     let error = match (raw, denoised_error(snapshot)) {
         (Some(raw), Some(Ok(error))) => {
             // Both to the first digit of the deviation.
-            let [rmse, deviation] = [error.rmse(), error.rmse_deviation()].map(|error| 100.0 * error);
-            let places = places(deviation, 1);
-            let [rmse, deviation] = [rmse, deviation].map(|percent| to_places(percent, places));
+            let of = error.rmse_deviation();
+            let [rmse, deviation] = [error.rmse(), of].map(|error| rounded(100.0 * error, 100.0 * of, 1));
             let of = view.denoised_of(status.run).map_or(count, |denoised| denoised.film.sample_count());
             let of = if of == count { String::new() } else { format!(" at {}", grouped(of)) };
-            format!(", denoised{of}: error {rmse} ± {deviation} (raw {raw})")
+            format!(", denoised{of}: error {} ± {} % (raw {raw})", compact(rmse), compact(deviation))
         }
         (Some(raw), Some(Err(reason))) => format!(", error {raw} (not denoised: {reason})"),
         (Some(raw), None) => format!(", error {raw}"),
@@ -167,7 +166,7 @@ fn ending(snapshot: &Snapshot) -> String {
     } else if let Some((goal, found)) = goal.zip(prediction(status, stop.noise)) {
         format!("; {goal} in about {}", time(found.time))
     } else if let Some(end) = stop.seconds {
-        format!("; done in {}", time(end - status.elapsed.as_secs_f64()))
+        format!("; done in {}", time((end - status.elapsed.as_secs_f64()).max(0.0)))
     } else {
         String::new()
     }
@@ -259,28 +258,7 @@ fn processor(BackendInfo { name, device, threads, .. }: &BackendInfo) -> String 
 /// An error in per cent of white, with the digits that it is sure of, two at most.
 fn percent(error: f64, deviation: f64) -> String {
     let digits = if deviation > 0.1 * error { 1 } else { 2 };
-    to_places(100.0 * error, places(100.0 * error, digits))
-}
-
-/// The decimal places of so many digits of a number.
-fn places(value: f64, digits: i32) -> usize {
-    if value > 0.0 { (digits - 1 - value.log10().floor() as i32).clamp(0, 6) as usize } else { 0 }
-}
-
-fn to_places(percent: f64, places: usize) -> String {
-    format!("{percent:.places$} %")
-}
-
-/// Seconds in words.
-pub fn time(seconds: f64) -> String {
-    let whole = seconds.max(0.0).round() as u64;
-    match whole {
-        0 if seconds > 0.0 => "1 s".to_owned(),
-        0..60 => format!("{whole} s"),
-        60..3600 => format!("{} min {} s", whole / 60, whole % 60),
-        3600..86_400 => format!("{} h {} min", whole / 3600, whole % 3600 / 60),
-        _ => "more than a day".to_owned(),
-    }
+    format!("{} %", compact(rounded(100.0 * error, 100.0 * error, digits)))
 }
 
 #[cfg(test)]
@@ -304,7 +282,7 @@ mod tests {
         snapshot.status = Arc::new(status.clone());
         snapshot.model.document.stop.noise = Some(0.002);
         assert!(
-            sentence(&snapshot).ends_with("error 0.40 %; 0.2 % in about 30 s"),
+            sentence(&snapshot).ends_with("error 0.4 %; 0.2 % in about 30.0 s"),
             "{}",
             sentence(&snapshot)
         );
@@ -319,7 +297,7 @@ mod tests {
         (snapshot.model.is_paused, snapshot.is_held) = (false, false);
         snapshot.status = Arc::new(Status { phase: Phase::Done(EndReason::NoiseTarget), ..status });
         assert!(
-            sentence(&snapshot).starts_with("Done: 100 samples per pixel in 10 s"),
+            sentence(&snapshot).starts_with("Done: 100 samples per pixel in 10.0 s"),
             "{}",
             sentence(&snapshot)
         );
@@ -327,6 +305,5 @@ mod tests {
         let errors = [(0.00123, 0.0), (0.00123, 0.001), (0.0456, 0.0), (0.3, 0.0)];
         let words = errors.map(|(error, deviation)| percent(error, deviation));
         assert_eq!(words, ["0.12 %", "0.1 %", "4.6 %", "30 %"]);
-        assert_eq!([4.2, 72.0, 7500.0, 1e6].map(time), ["4 s", "1 min 12 s", "2 h 5 min", "more than a day"]);
     }
 }

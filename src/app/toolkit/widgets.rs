@@ -475,7 +475,7 @@ fn with_minus(text: &str) -> String {
 }
 
 /// A number rounded to `digits` digits of `scale`.
-fn rounded(n: f64, scale: f64, digits: i32) -> f64 {
+pub fn rounded(n: f64, scale: f64, digits: i32) -> f64 {
     let step = 10_f64.powi(scale.log10().floor().clamp(-300.0, 300.0) as i32 + 1 - digits);
     let rounded = (n / step).round() * step;
     if rounded.is_finite() { rounded } else { n }
