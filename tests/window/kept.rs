@@ -3,9 +3,10 @@
 use crate::harness::{
     SMALL, drag_from, has_samples, mean, middle, name_file, open, save, scroll, send, until,
 };
+use crate::objects::click;
 use crate::questions::Ask as _;
 use crate::recovered::held;
-use eframe::egui::{Key, vec2};
+use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Window};
@@ -75,6 +76,25 @@ fn a_kept_picture_shields_the_traced_one() {
     harness.run_steps(2);
     assert_eq!(harness.state().looked(), None);
     assert!(harness.state().listed_paths() > 0 && is_done(harness.state()));
+}
+
+/// Left of the divider lies the kept picture, which has no spheres to select.
+#[test]
+fn nothing_acts_on_what_a_wipe_covers() {
+    let mut harness = finished(8);
+    keep(&mut harness);
+    send(&mut harness, Command::Wipe);
+    harness.run_steps(3);
+    let rect = harness.state().picture_rect();
+    let camera = harness.state().shown_document().camera;
+    for (x, is_selected) in [(0.3, false), (0.6, true)] {
+        let at = rect.lerp_inside(vec2(x, 0.6));
+        click(&mut harness, at, Modifiers::NONE);
+        assert_eq!(harness.state().selected().is_some(), is_selected, "{x}");
+        assert_eq!(harness.state().disabled_reason(Command::ListPaths).is_none(), is_selected, "{x}");
+    }
+    drag_from(&mut harness, rect.lerp_inside(vec2(0.2, 0.2)), vec2(9.0, 9.0));
+    assert_eq!(harness.state().shown_document().camera, camera);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The spheres of the scene: selecting and dragging them.
 
-use crate::harness::{drag_from, has_samples, open, send, until};
+use crate::harness::{drag, drag_from, has_samples, open, send, until};
 use crate::questions::Ask as _;
 use eframe::egui::{self, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
@@ -117,6 +117,21 @@ fn a_drag_moves_the_selected_sphere_and_nothing_else() {
     send(&mut harness, Command::Redo);
     assert_eq!(spheres(&harness), after);
     assert_eq!(harness.state().selected(), Some(metal));
+}
+
+/// It stays on what it stands on; with Ctrl it goes anywhere.
+#[test]
+fn a_dragged_ball_stays_on_its_level() {
+    let mut harness = open("--stage metal --size 64x36 --device cpu");
+    send(&mut harness, Command::NewScene);
+    until(&mut harness, "a picture", has_samples(1));
+    select(&mut harness, 1);
+    let before = spheres(&harness)[1].center;
+    drag(&mut harness, PointerButton::Primary, Modifiers::NONE);
+    let after = spheres(&harness)[1].center;
+    assert!((after.y - before.y).abs() < 1e-9 && after.distance(before) > 0.1, "{before} {after}");
+    drag(&mut harness, PointerButton::Primary, Modifiers::COMMAND);
+    assert!((spheres(&harness)[1].center.y - after.y).abs() > 0.1);
 }
 
 #[test]

@@ -88,6 +88,9 @@ fn tab_goes_through_the_bar_from_left_to_right() {
 #[test]
 fn f6_goes_from_panel_to_panel() {
     let mut harness = open_sized(SMALL, [1280.0, 800.0]);
+    send(&mut harness, Command::ErrorDock);
+    harness.state_mut().shell.toasts.bad("Not opened: on purpose");
+    harness.run_steps(3);
     let mut focused = || {
         harness.key_press(Key::F6);
         harness.run_steps(3);
@@ -95,8 +98,9 @@ fn f6_goes_from_panel_to_panel() {
         let node = nodes.map(|node| node.accesskit_node()).find(|node| node.is_focused());
         node.and_then(|node| node.label())
     };
-    let names = [(); 4].map(|()| focused().unwrap_or_default());
-    assert_eq!(names, ["File", "Field of view", "Compare with", "File"]);
+    let names = [(); 6].map(|()| focused().unwrap_or_default());
+    let expected = ["File", "Field of view", "Compare with", "Error", "Close this message", "File"];
+    assert_eq!(names, expected);
 }
 
 /// Everything that a command or a control can change.

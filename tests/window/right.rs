@@ -30,7 +30,8 @@ pub fn drop_picture(harness: &mut Harness<'_, Window>, content: &[u8]) -> tempfi
 /// Waits until the picture of a check is shown beside that of its stage.
 pub fn until_compared(harness: &mut Harness<'_, Window>) {
     until(harness, "both pictures", |window| {
-        window.is_comparing() && window.has_other_picture() && has_samples(1)(window)
+        let is_beside = window.is_comparing() && !window.model.view.is_hidden();
+        is_beside && window.has_other_picture() && has_samples(1)(window)
     });
 }
 
@@ -76,6 +77,7 @@ fn a_check_leaves_the_users_own_picture_as_it_was() {
     control(&harness, "Close").click();
     harness.run_steps(3);
     assert!(*harness.state().shown_document() == own && !harness.state().is_comparing());
+    assert_eq!(harness.state().changes.labels(&own)[0], Some("added sphere"), "a check is no step");
     until(&mut harness, "its samples", |window| held(window) == 40);
     assert!(harness.state().status().contributions.is_empty(), "nothing was traced again");
     // A picture that was changed during a check stays.

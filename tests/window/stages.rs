@@ -1,9 +1,10 @@
 //! The walk through the book.
 
-use crate::harness::{open, send};
+use crate::harness::{middle, open, send};
 use crate::questions::Ask as _;
-use eframe::egui::Key;
+use eframe::egui::{Event, Key};
 use weekender::app::Command;
+use weekender::progressive::Stop;
 use weekender::stages::Stage;
 
 #[test]
@@ -23,4 +24,23 @@ fn page_down_walks_through_the_book() {
     harness.key_press(Key::PageUp);
     harness.run_steps(2);
     assert_eq!(harness.state().shown_document().stage().unwrap().id, "hollow-glass");
+}
+
+/// Also nothing is known about a pixel of another picture.
+#[test]
+fn the_samples_of_a_picture_are_there_when_one_comes_back() {
+    let mut harness = open("--stage metal --size 32x18 --device cpu");
+    let usual = harness.state().shown_document().stop;
+    let at = middle(&harness);
+    harness.hover_at(at);
+    harness.run_steps(2);
+    assert!(harness.state().disabled_reason(Command::ListPaths).is_none());
+    harness.event(Event::PointerGone);
+    harness.state_mut().document_mut().stop = Stop::at_samples(77);
+    harness.run_steps(2);
+    send(&mut harness, Command::NextStage);
+    assert_eq!(harness.state().shown_document().stop, usual);
+    assert!(harness.state().disabled_reason(Command::ListPaths).is_some());
+    send(&mut harness, Command::PreviousStage);
+    assert_eq!(harness.state().shown_document().stop, Stop::at_samples(77));
 }

@@ -2,9 +2,9 @@
 
 use super::outcome::Outcome;
 use crate::app::commands::{Command, PanelContext, ROWS, Snapshot};
-use crate::app::toolkit::Finder;
 use crate::app::toolkit::menu::{line, name_state};
 use crate::app::toolkit::widgets::{caption, hint};
+use crate::app::toolkit::{Finder, rank};
 use crate::measure::stress::shown_cases;
 use crate::stages::Stage;
 use eframe::egui::{Response, RichText, Ui, vec2};
@@ -21,33 +21,6 @@ const FIELDS: [(&str, &str); 5] = [
     ("Focus distance", "focus sharp"),
     ("Render", "size samples noise grain quality spp resolution pixels stop sampler seed depth"),
 ];
-
-/// How well a text finds a command; less is better. `None` if it does not.
-fn rank(text: &str, name: &str, synonyms: &str, help: &str) -> Option<usize> {
-    let [text, name, synonyms, help] = [text.trim(), name, synonyms, help].map(str::to_lowercase);
-    let typed = words_of(&text);
-    let all = |words: &[&str], is_found: fn(&str, &str) -> bool| {
-        typed.iter().all(|typed| words.iter().any(|word| is_found(word, typed)))
-    };
-    let whole = |word: &str, typed: &str| word == typed;
-    let begins = |word: &str, typed: &str| word.starts_with(typed);
-    let [of_name, of_synonyms, of_help] = [&name, &synonyms, &help].map(|text| words_of(text));
-    let everything = [of_name.clone(), of_synonyms.clone(), of_help].concat();
-    let ways: [bool; 6] = [
-        name.trim_end_matches('…') == text,
-        all(&of_name, whole),
-        all(&of_name, begins),
-        all(&of_synonyms, whole),
-        all(&of_synonyms, begins),
-        all(&everything, begins),
-    ];
-    ways.into_iter().position(|is_so| is_so)
-}
-
-/// The words of a name. Numbers of sections, such as 11.4, are words.
-fn words_of(text: &str) -> Vec<&str> {
-    text.split(|c: char| !c.is_alphanumeric() && c != '.').filter(|word| !word.is_empty()).collect()
-}
 
 /// A line of the palette.
 struct Found {

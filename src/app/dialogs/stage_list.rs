@@ -3,7 +3,7 @@
 use super::outcome::Outcome;
 use crate::app::commands::{Command, PanelContext, Snapshot};
 use crate::app::toolkit::widgets::{caption, choice, tip};
-use crate::app::toolkit::{Finder, has_words, theme};
+use crate::app::toolkit::{Finder, rank, theme};
 use crate::measure::stress::shown_cases;
 use crate::stages::Stage;
 use eframe::egui::text::LayoutJob;
@@ -35,22 +35,19 @@ fn heading_of(row: Command) -> String {
     }
 }
 
-/// The words by which a row is found; what is new only if nothing has them in its name.
-fn words_of(row: Command, is_long: bool) -> String {
-    let more = match row {
-        Command::Stage(stage) => format!("{} {}", stage.section_title(), stage.id),
-        _ => String::new(),
-    };
-    let help = if is_long { row.help() } else { "" };
-    format!("{} {more} {} {help}", row.name(), heading_of(row))
-}
-
+/// The rows that a text finds; by what is new only if nothing has its words in its name.
 fn found(typed: &str) -> Vec<Command> {
-    let having = |is_long| -> Vec<Command> {
-        rows().filter(|row| has_words(&words_of(*row, is_long), typed)).collect()
-    };
-    let by_name = having(false);
-    if by_name.is_empty() { having(true) } else { by_name }
+    let ranked = rows().filter_map(|row| {
+        let more = match row {
+            Command::Stage(stage) => format!("{} {}", stage.section_title(), stage.id),
+            _ => String::new(),
+        };
+        Some((rank(typed, &row.name(), &format!("{more} {}", heading_of(row)), row.help())?, row))
+    });
+    let ranked: Vec<_> = ranked.collect();
+    let is_named = |(rank, _): &&(usize, Command)| *rank < 5;
+    let has_name = ranked.iter().any(|found| is_named(&found));
+    ranked.iter().filter(|found| !has_name || is_named(found)).map(|(_, row)| *row).collect()
 }
 
 /// The list at the picture that is shown.

@@ -6,7 +6,7 @@ use super::describer;
 use super::edits::{self, STEPS};
 use crate::app::commands::Films;
 use crate::app::model::changes::Changes;
-use crate::app::model::{Document, Model, Sizing};
+use crate::app::model::{Document, Kept, Model, Sizing};
 use crate::app::toolkit::{Answers, caught};
 use crate::app::tracing::Tracing;
 use crate::app::tracing::tracer::{Left, Tracer};
@@ -89,6 +89,8 @@ pub struct Store {
     /// The film of the command line, and its job.
     pub named: Option<(PathBuf, RenderJob)>,
     pub found: Answers<Found>,
+    /// The pictures that earlier windows have kept to compare with.
+    pub kept: Answers<Kept>,
     /// Why a film could not be written, and that nothing waits any more.
     pub outcomes: Receiver<Result<(), String>>,
     films: Arc<Mutex<Films>>,
@@ -129,6 +131,7 @@ impl Store {
             sought: None,
             named: None,
             found: Answers::default(),
+            kept: Answers::default(),
             outcomes,
             films,
         };
@@ -148,6 +151,20 @@ impl Store {
     /// Deletes the film of a picture, or all films.
     pub fn delete(&self, of: Option<Document>) {
         self.task(move |shelf| shelf.delete(of));
+    }
+
+    /// Writes a picture that is kept to compare with, until it is deleted.
+    pub fn pin(&self, kept: Arc<Kept>) {
+        self.task(move |shelf| {
+            let Some((path, document)) = shelf.pinned(&kept).zip(kept.document.as_ref()) else { return };
+            let about = Description::new(&file::to_picture_toml(&document.recipe()));
+            let outcome = write(&path, &kept.film, &about);
+            shelf.tell(outcome);
+        });
+    }
+
+    pub fn unpin(&self, kept: Arc<Kept>) {
+        self.task(move |shelf| _ = shelf.pinned(&kept).map(fs::remove_file));
     }
 
     /// Keeps edits and films, and asks for the film of a picture that comes back.
@@ -214,6 +231,18 @@ impl Store {
         }
         let (document, answer) = (model.document.clone(), self.found.answer(context));
         let before = self.sought.replace(document.clone());
+        if before.is_none() {
+            let answer = self.kept.answer(context);
+            self.task(move |shelf| {
+                let kept = shelf.files().into_iter().rev().filter(|(.., path)| is_pin(path));
+                let opened = kept.filter_map(|(.., path)| {
+                    let saved = saved::open(&path).ok()?;
+                    let document = Document::of_film(&saved.recipe, saved.stage());
+                    Some(Kept::new(document, saved.film().ok()?.film))
+                });
+                opened.for_each(|kept| answer.give(Ok(kept)));
+            });
+        }
         // A picture that has been given another size is meant to have that.
         let is_resized = before.is_some_and(|before| before.is_same_at_another_size(&document));
         let fits = model.remembered.sizing == Sizing::Viewport && model.presentation.is_none();
@@ -333,8 +362,13 @@ impl Shelf {
         }
     }
 
-    /// The films in the folder, newest first: when each was written, its bytes and its path.
+    /// The films in the folder that go when they are too many.
     fn films(&self) -> Vec<(SystemTime, u64, PathBuf)> {
+        self.files().into_iter().filter(|(.., path)| !is_pin(path)).collect()
+    }
+
+    /// The films in the folder, newest first: when each was written, its bytes and its path.
+    fn files(&self) -> Vec<(SystemTime, u64, PathBuf)> {
         let entries = self.folder.as_ref().and_then(|folder| fs::read_dir(folder).ok());
         let about = |entry: fs::DirEntry| {
             let about = entry.metadata().ok()?;
@@ -385,6 +419,14 @@ impl Shelf {
         saved.film().ok()
     }
 
+    /// The file of a picture that is kept to compare with.
+    fn pinned(&self, kept: &Kept) -> Option<PathBuf> {
+        let [width, height] = kept.size();
+        let name = fingerprint(kept.document.as_ref()?);
+        let name = format!("{PIN}{name}-{width}x{height}-{}.exr", kept.samples());
+        Some(self.folder.as_ref()?.join(name))
+    }
+
     /// The file of a document's film.
     fn path(&self, document: &Document) -> PathBuf {
         let [width, height] = document.size();
@@ -403,6 +445,13 @@ fn thin(films: Vec<(SystemTime, u64, PathBuf)>, limit: u64) -> Films {
         }
     }
     left
+}
+
+/// How the names of kept pictures begin.
+const PIN: &str = "kept-";
+
+fn is_pin(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(PIN))
 }
 
 /// What tells a picture from others, apart from its size.

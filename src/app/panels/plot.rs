@@ -76,9 +76,9 @@ impl Race {
             let speed = two_digits(status.rays_per_second() / 1e6);
             let words = egui::RichText::new(format!("{name}: {speed} million rays per second"));
             ui.label(words.strong().color(style(ui, device.name()).0));
-            let error = status.error.map_or_else(String::new, |error| {
-                format!(", error {} %", two_digits(100.0 * error.rmse))
-            });
+            let error = status
+                .error
+                .map_or_else(String::new, |error| format!(", error {} %", two_digits(100.0 * error.rmse)));
             let seconds = two_digits(status.trace.as_secs_f64());
             small(ui, format!("{} in {seconds} s{error}", samples_words(status.samples_per_pixel)));
         }

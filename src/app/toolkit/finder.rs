@@ -6,10 +6,31 @@ use eframe::egui::{Align, Context, Event, Key, Modifiers, Response, ScrollArea, 
 /// Rows per Page Up or Page Down.
 const PAGE: usize = 8;
 
-/// Whether `text` has all words that were typed, or parts of words.
-pub fn has_words(text: &str, typed: &str) -> bool {
-    let text = text.to_lowercase();
-    typed.to_lowercase().split_whitespace().all(|word| text.contains(word))
+/// How well a text finds what has this name; less is better. `None` if it does not.
+pub fn rank(text: &str, name: &str, synonyms: &str, help: &str) -> Option<usize> {
+    let [text, name, synonyms, help] = [text.trim(), name, synonyms, help].map(str::to_lowercase);
+    let typed = words_of(&text);
+    let all = |words: &[&str], is_found: fn(&str, &str) -> bool| {
+        typed.iter().all(|typed| words.iter().any(|word| is_found(word, typed)))
+    };
+    let whole = |word: &str, typed: &str| word == typed;
+    let begins = |word: &str, typed: &str| word.starts_with(typed);
+    let [of_name, of_synonyms, of_help] = [&name, &synonyms, &help].map(|text| words_of(text));
+    let everything = [of_name.clone(), of_synonyms.clone(), of_help].concat();
+    let ways: [bool; 6] = [
+        name.trim_end_matches('…') == text,
+        all(&of_name, whole),
+        all(&of_name, begins),
+        all(&of_synonyms, whole),
+        all(&of_synonyms, begins),
+        all(&everything, begins),
+    ];
+    ways.into_iter().position(|is_so| is_so)
+}
+
+/// The words of a name. Numbers of sections, such as 11.4, are words.
+fn words_of(text: &str) -> Vec<&str> {
+    text.split(|c: char| !c.is_alphanumeric() && c != '.').filter(|word| !word.is_empty()).collect()
 }
 
 /// The typed text, and the chosen row.

@@ -11,6 +11,6 @@ mod toasts;
 pub mod widgets;
 
 pub use answers::{Answers, Query, caught};
-pub use finder::{Finder, has_words};
+pub use finder::{Finder, rank};
 pub use texture::Texture;
 pub use toasts::Toasts;

@@ -198,6 +198,9 @@ mod tests {
         }
         // The last pan is not swallowed by what went too far.
         assert_eq!(placement.rect.left(), ROOM.left() - 800.0 + 30.0);
+        let mut fitted = placed(1.0);
+        fitted.pan_by(vec2(50.0, 50.0));
+        assert_eq!(fitted.zoom, Zoom::Fit, "nothing to pan");
         placement.zoom_by(0.1);
         placement.place(ROOM, SIZE, 1.0);
         placement.pan_by(vec2(50.0, 50.0));
@@ -205,6 +208,17 @@ mod tests {
             placement.place(ROOM, SIZE, 1.0).center().distance(ROOM.center()) < 1.0,
             "smaller than the room"
         );
+    }
+
+    #[test]
+    fn the_pixel_at_a_point_is_the_one_that_is_drawn_there() {
+        // 760 pixels of the screen from column 283 on.
+        let mut placement = Placement::default();
+        let room = Rect::from_min_size(pos2(283.0, 0.0), vec2(760.0, 428.0));
+        placement.place(room, vec2(760.0, 428.0), 1.0);
+        for x in 0..760_u32 {
+            assert_eq!(placement.pixel_at(pos2(283.0 + x as f32, 9.0), [760, 428]), Some([x, 9]));
+        }
     }
 
     #[test]

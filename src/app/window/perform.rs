@@ -158,13 +158,18 @@ impl Window {
                 display.kept.asked.make(document, view.partner);
             }
             C::GoOnFromKept => {
-                if let Some(document) = view.kept_partner().and_then(|kept| kept.document.clone()) {
-                    // Its film is in the store.
+                let kept =
+                    view.kept_partner().and_then(|kept| Some((kept.document.clone()?, kept.film.try_copy())));
+                if let Some((document, Ok(film))) = kept {
                     self.show_document(Document { has_own_size: true, ..document });
+                    self.adopt(SavedFilm { film, seconds: None });
                     self.model.view.end_comparison();
                 }
             }
-            C::DeleteKept => view.delete_kept(),
+            C::DeleteKept => {
+                view.kept_partner().into_iter().for_each(|kept| self.store.unpin(Arc::clone(kept)));
+                view.delete_kept();
+            }
 
             C::Stages => shell.dialogs.open(Dialog::Stages(stage_list::list(snapshot))),
             C::Stage(stage) => self.show_origin(Origin::of_stage(stage)),

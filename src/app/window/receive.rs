@@ -57,6 +57,9 @@ impl Window {
                 self.model.view.compare_with(partner);
             }
         }
+        while let Some(Ok(kept)) = self.store.kept.take() {
+            self.model.view.kept.add(kept);
+        }
         while let Some(outcome) = self.store.found.take() {
             self.settle("Not resumed", outcome).into_iter().for_each(|found| self.go_on(found));
         }
@@ -125,6 +128,7 @@ impl Window {
 
     fn add_kept(&mut self, kept: Kept) {
         let place = self.model.view.keep(kept);
+        self.model.view.kept.iter().last().into_iter().for_each(|kept| self.store.pin(Arc::clone(kept)));
         self.shell.toasts.good(format!("Kept; Compare with has it as number {}", place + 1));
     }
 

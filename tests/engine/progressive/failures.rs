@@ -147,6 +147,8 @@ fn spoilt_film_is_restarted() {
     });
     let status = progressive.wait_until_over();
     assert_eq!((status.phase, status.samples_per_pixel), (Phase::Done(EndReason::Samples), 100));
+    let traced: u64 = status.contributions.iter().map(|part| part.samples_per_pixel).sum();
+    assert_eq!(traced, 100, "lost samples do not count");
     assert_eq!(progressive.take_film(), Some(expected(100)));
 
     let progressive = started_with(CPU, Plan::samples(100), |choice| spoiling(choice.name(), || ()));
