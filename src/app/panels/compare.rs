@@ -2,10 +2,9 @@
 
 use crate::app::commands::{Command, PanelContext};
 use crate::app::model::{Dock, Partner};
+use crate::app::toolkit::number::samples_words;
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{
-    About, caption, command_button, command_switch, entry, list, samples_words, small,
-};
+use crate::app::toolkit::widgets::{About, caption, command_button, command_switch, entry, list, small};
 use crate::stages::Stage;
 use eframe::egui::{Label, RichText, Ui};
 

@@ -4,9 +4,9 @@ use super::spheres;
 use crate::app::commands::{Command, PanelContext};
 use crate::app::model::spheres::Selected;
 use crate::app::model::{Body, Document, Edit, Remembered, Sizing};
+use crate::app::toolkit::number::{Number, colour, point_words, vector};
 use crate::app::toolkit::widgets::{
-    About, Header, Number, above, check, colour, command_button, entry, fold, group, hint, list, panel_line,
-    point_words, row, switch, vector,
+    About, Header, above, check, command_button, entry, fold, group, hint, list, panel_line, row, switch,
 };
 use crate::job::render::{DEPTH_LIMIT, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::progressive::Stop;

@@ -4,8 +4,9 @@
 use super::compare;
 use crate::app::commands::{PanelContext, Snapshot};
 use crate::app::model::Device;
+use crate::app::toolkit::number::{compact, rounded, samples_words};
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{compact, hint, rounded, samples_words, small, swatch};
+use crate::app::toolkit::widgets::{hint, small, swatch};
 use crate::numbers::statistics::fit::{Point, Prediction, predict};
 use crate::progressive::{HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, Status};
 use eframe::egui::{self, Color32, Rangef, Sense, Ui, UiBuilder, Vec2b};

@@ -2,8 +2,9 @@
 
 use crate::app::commands::{Command, PanelContext};
 use crate::app::model::kind_word;
+use crate::app::toolkit::number::shown_albedo;
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{choice, hint, shown_albedo};
+use crate::app::toolkit::widgets::{choice, hint};
 use crate::scene::Scene;
 use eframe::egui::{
     Atom, Color32, IdSalt, Response, RichText, Role, ScrollArea, Stroke, Ui, WidgetInfo, vec2,

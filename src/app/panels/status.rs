@@ -2,8 +2,9 @@
 
 use super::plot::prediction;
 use crate::app::commands::{Command, PanelContext, Snapshot};
+use crate::app::toolkit::number::{compact, rounded, samples_words};
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{command_button, compact, rounded, samples_words, small, tip};
+use crate::app::toolkit::widgets::{command_button, small, tip};
 use crate::denoise::DenoisedError;
 use crate::film::Film;
 use crate::job::render::BackendInfo;

@@ -2,7 +2,8 @@
 
 use crate::app::commands::{Command, PanelContext};
 use crate::app::model::{Show, Tone, ViewState};
-use crate::app::toolkit::widgets::{About, Header, Number, add_command, compact, entry, fold, list};
+use crate::app::toolkit::number::{Number, compact};
+use crate::app::toolkit::widgets::{About, Header, add_command, entry, fold, list};
 use eframe::egui::{Checkbox, Ui};
 
 /// Draws the view and its brightness.

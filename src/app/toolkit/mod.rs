@@ -4,6 +4,7 @@
 mod answers;
 mod finder;
 pub mod menu;
+pub mod number;
 pub mod overlay;
 mod texture;
 pub mod theme;

@@ -4,7 +4,8 @@
 use crate::app::commands::Snapshot;
 use crate::app::model::spheres::MANY;
 use crate::app::model::{Document, Mode, Partner, ViewState, at_other, kind_word};
-use crate::app::toolkit::widgets::{compact, hint, tip};
+use crate::app::toolkit::number::compact;
+use crate::app::toolkit::widgets::{hint, tip};
 use crate::app::toolkit::{Query, theme};
 use crate::app::tracing::second::{Other, OtherId};
 use crate::app::tracing::subject::{PictureId, Subject};

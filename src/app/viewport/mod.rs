@@ -13,7 +13,7 @@ pub use placement::{Placement, Touch};
 use crate::app::commands::{Command, PanelContext, Snapshot};
 use crate::app::model::{Document, Mode, Partner, navigation};
 use crate::app::toolkit::menu;
-use crate::app::toolkit::widgets::compact;
+use crate::app::toolkit::number::compact;
 use crate::scene::Camera;
 use eframe::egui::{self, CursorIcon, PointerButton, Pos2, Rect, Response, Sense, Ui, WidgetInfo, vec2};
 use moving::Moving;

@@ -6,9 +6,9 @@ use crate::app::model::spheres::grip::{Grip, Held};
 use crate::app::model::spheres::silhouette::Outline;
 use crate::app::model::spheres::{MANY, Selected};
 use crate::app::model::{Body, Document, Edit};
+use crate::app::toolkit::number::{compact, point_words};
 use crate::app::toolkit::overlay::plate;
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{compact, point_words};
 use eframe::egui::{
     Align2, Color32, CursorIcon, PointerButton, Pos2, Rect, Response, Shape, Stroke, Ui, vec2,
 };

@@ -1,10 +1,12 @@
-//! The window: its parts, and the order of a frame. Only this file and `perform`, `receive` and `layout`, which extend it,
+//! The window: its parts, and the order of a frame. Only this file and those that extend it
 //! know all parts.
 
 mod input;
 mod layout;
 mod perform;
+mod pictures;
 mod receive;
+mod saving;
 mod shell;
 
 use crate::app::commands::{Command, Snapshot};

@@ -3,30 +3,22 @@
 use super::Window;
 use super::layout::NARROW;
 use crate::app::commands::{Command, MENUS, Snapshot};
-use crate::app::dialogs::{
-    Dialog, Outcome, Purpose, SaveBox, Wanted, What, default_folder, samples_to_save, stage_list,
-};
+use crate::app::dialogs::{Dialog, Purpose, What, stage_list};
 use crate::app::model::animation::{FRAMES_PER_SECOND, Play};
 use crate::app::model::spheres::grip::new_body;
 use crate::app::model::spheres::{self, Selected};
 use crate::app::model::{
-    Body, Device, Dock, Document, Edit, Mode, Model, Origin, Partner, Presentation, Remembered, Show, Source,
-    Tab, Tone, companion, navigation,
+    Body, Device, Dock, Document, Edit, Mode, Model, Origin, Presentation, Remembered, Show, Source, Tab,
+    Tone, navigation,
 };
 use crate::app::toolkit::Finder;
 use crate::app::toolkit::widgets::focus;
-use crate::app::viewport::sight::Sight;
-use crate::batch::{BatchOptions, FrameNames, FramesOptions, Output, Studio};
 use crate::job::output::OutputFormat;
-use crate::job::recipe::Recipe;
 use crate::job::saved::SavedFilm;
 use crate::stages::{BOOK_URL, Stage};
-use crate::system::terminal::ProgressChoice;
-use eframe::egui::{self, Context, ViewportCommand};
+use eframe::egui::{Context, ViewportCommand};
 use glam::DVec3;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
 
 impl Window {
     /// Carries out a command. A disabled command shows why it is disabled.
@@ -208,7 +200,7 @@ impl Window {
         }
     }
 
-    fn refuse(&mut self, name: &str, reason: &str) {
+    pub(super) fn refuse(&mut self, name: &str, reason: &str) {
         let mut letters = reason.chars();
         let reason: String = letters.next().into_iter().flat_map(char::to_lowercase).chain(letters).collect();
         self.shell.toasts.good(format!("{}: {reason}", name.trim_end_matches('…')));
@@ -237,70 +229,6 @@ impl Window {
             model.remembered.dock = None;
         } else if model.is_full_screen {
             commands.push(Command::FullScreen);
-        }
-    }
-
-    // The picture that is shown
-
-    /// Shows another picture. The user's own way to stop stays, unless the picture has its own.
-    pub(super) fn show_origin(&mut self, origin: Origin) {
-        let document = self.fresh(origin);
-        let before = self.document();
-        if before.is_changed() && !before.is_from_file {
-            let words = format!("Your changes to {} are kept in Undo", before.place());
-            self.shell.toasts.good_with(words, &[Command::Undo]);
-        }
-        self.show_document(document);
-    }
-
-    /// A picture from this origin, with what the user has chosen for it.
-    fn fresh(&self, origin: Origin) -> Document {
-        let mut document = Document::new(origin);
-        if let Some(stop) = self.model.own_stop.filter(|_| document.stop.samples.is_none()) {
-            document.stop = stop;
-        }
-        // Bookmarks and the end of a picture are there again when one comes back to it.
-        let known = self.changes.last_of(&document.origin.source).filter(|_| !document.is_from_file);
-        if let Some(known) = known.filter(|known| known.origin.source != Source::New) {
-            document.keyframes.clone_from(&known.keyframes);
-            if known.stop != known.origin.usual_stop() {
-                document.stop = known.stop;
-            }
-        }
-        document
-    }
-
-    pub(super) fn show_document(&mut self, document: Document) {
-        self.end_sight();
-        let is_with_stage =
-            |model: &Model| matches!(model.view.compared(&model.document), Some(Partner::Stage(_)));
-        let was_with_stage = is_with_stage(&self.model);
-        if !Arc::ptr_eq(&document.origin, &self.document().origin) {
-            self.leave_picture();
-            self.shell.toasts.end_refusals();
-        }
-        self.model.document = document;
-        // The next stage has a partner of its own; what has none is not compared with something of another kind.
-        if was_with_stage && !is_with_stage(&self.model) {
-            self.model.view.end_comparison();
-        }
-        self.model.selected = None;
-        if self.model.remembered.tab == Tab::Check {
-            self.model.remembered.tab = Tab::Stage;
-        }
-        self.tools.forget();
-    }
-
-    /// Leaves what belongs to the picture that was shown.
-    fn leave_picture(&mut self) {
-        self.model.view.leave_partner();
-        self.display.viewport.placement.leave_part();
-        self.display.check = None;
-    }
-
-    pub(super) fn step_stage(&mut self, is_next: bool) {
-        if let Some(stage) = self.model.neighbour(is_next) {
-            self.show_origin(Origin::of_stage(stage));
         }
     }
 
@@ -404,135 +332,6 @@ impl Window {
         }
     }
 
-    // View
-
-    fn compare_with(&mut self, partner: Partner) {
-        if partner == Partner::Mine {
-            self.visit_checked();
-        }
-        self.model.view.compare_with(partner);
-        if partner == Partner::Mine && self.display.check.is_none() && !self.model.view.is_hidden() {
-            self.model.view.toggle(Mode::Flip);
-        }
-        if matches!(partner, Partner::Device(_)) {
-            self.model.remembered.dock = Some(Dock::Error);
-        }
-    }
-
-    /// Compares CPU and GPU, or ends that.
-    fn compare_devices(&mut self) {
-        let other = if self.model.remembered.device == Device::Gpu { Device::Cpu } else { Device::Gpu };
-        if self.model.other_device() == Some(other) {
-            self.model.view.end_comparison();
-            return;
-        }
-        if !matches!(self.model.remembered.device, Device::Cpu | Device::Gpu) {
-            self.model.remembered.device = Device::Cpu;
-        }
-        self.compare_with(Partner::Device(other));
-    }
-
-    /// Traces the stage of the picture that is checked, in its size. The end of the check returns to what is shown now.
-    fn visit_checked(&mut self) {
-        let Some((stage, mine)) = self.tools.check.found() else { return };
-        let size = mine.size();
-        let is_of = |[_, of]: &[Document; 2]| Arc::ptr_eq(&of.origin, &self.document().origin);
-        let begun = self.display.check.clone().filter(is_of);
-        let is_shown = self.document().stage() == Some(stage) && self.document().size() == size;
-        if begun.is_some() && is_shown {
-            return;
-        }
-        self.end_sight();
-        let before = begun.map_or_else(|| self.document().clone(), |[before, _]| before);
-        let tab = self.model.remembered.tab;
-        let mut document = self.fresh(Origin::of_stage(stage));
-        document.give_size(size);
-        self.show_document(document);
-        self.model.remembered.tab = tab;
-        self.display.viewport.placement.fit();
-        self.display.check = Some([before, self.document().clone()]);
-    }
-
-    /// Takes what a check has read or found, and shows it if the check is in sight.
-    pub(super) fn take_checked(&mut self) {
-        let before = std::mem::replace(&mut self.model.view.kept.mine, self.tools.check.mine.clone());
-        let is_compared = self.model.view.compared(self.document()) == Some(Partner::Mine);
-        if self.model.view.kept.mine.is_none() {
-            self.end_check();
-        } else if before.is_none() && self.model.shows(Tab::Check) || is_compared {
-            // The first finding shows it beside ours.
-            if before.is_none() || self.display.check.is_none() {
-                self.model.view.end_comparison();
-            }
-            self.compare_with(Partner::Mine);
-        }
-    }
-
-    /// Ends the pictures of a check that was closed.
-    pub(super) fn follow_check(&mut self) {
-        let mine = self.model.view.kept.mine.as_ref();
-        if mine.is_some_and(|mine| mine.name != self.tools.check.name()) {
-            self.end_check();
-        }
-    }
-
-    /// Returns to the picture that was shown before a check, unless the one of the check was changed.
-    pub(super) fn end_check(&mut self) {
-        self.model.view.kept.mine = None;
-        let Some([before, of_check]) = self.display.check.take() else { return };
-        self.end_sight();
-        self.model.view.leave_partner();
-        if self.document().has_same_film(&of_check) {
-            self.show_document(before);
-        }
-    }
-
-    /// Leaves views and comparisons that the picture of now cannot have.
-    pub(super) fn leave_useless_views(&mut self) {
-        let show = self.model.view.show();
-        if let Some(reason) = self.model.useless_show(show).filter(|_| show != Show::Picture) {
-            self.refuse(show.name(), &reason);
-            self.model.view.leave_show();
-        }
-        if self.model.view.mode() == Some(Mode::Difference)
-            && let Some(reason) = self.model.not_subtractable()
-        {
-            self.shell.toasts.good_with(reason, &[Command::RenderAtPartnerSize]);
-            self.model.view.end_comparison();
-        }
-        let Some(sight) = &self.display.sight else { return };
-        if !sight.is_of(&self.model.document) {
-            self.end_sight();
-        } else if !sight.lasts(&self.model.document, &self.model.view) {
-            self.display.sight = None;
-            self.display.viewport.placement.leave_part();
-        }
-    }
-
-    pub(super) fn toggle_sight(&mut self) {
-        if self.display.sight.is_some() {
-            self.end_sight();
-            return;
-        }
-        let Some(stage) = self.document().stage() else { return };
-        let (document, view) = (&mut self.model.document, &mut self.model.view);
-        self.display.sight = Some(Sight::show(stage, document, view, &mut self.display.viewport.placement));
-    }
-
-    pub(super) fn end_sight(&mut self) {
-        if let Some(sight) = self.display.sight.take() {
-            let (document, view) = (&mut self.model.document, &mut self.model.view);
-            sight.end(document, view, &mut self.display.viewport.placement);
-        }
-    }
-
-    pub(super) fn list_paths(&mut self, context: &Context) {
-        if let Some(pixel) = self.tools.inspector.hovered {
-            self.tools.paths.list(&self.model.document, pixel, context);
-            self.model.remembered.dock = Some(Dock::Path);
-        }
-    }
-
     // Panels
 
     /// Shows or hides a panel. If all are hidden, shows them with this one.
@@ -627,124 +426,5 @@ impl Window {
     /// Goes on with a film of the document.
     pub(super) fn adopt(&mut self, film: SavedFilm) {
         (self.tracing.film, self.store.sought) = (Some(film), Some(self.document().clone()));
-    }
-
-    // Files
-
-    pub(super) fn ask_path(&mut self, context: &Context, purpose: Purpose) {
-        let from = self.folder();
-        self.shell.dialogs.system.ask(context, purpose, from);
-    }
-
-    /// Opens the dialog of saving with this choice.
-    pub(super) fn ask_save(&mut self, what: What) {
-        let save = SaveBox::new(self.document(), self.folder(), what);
-        self.shell.dialogs.open(Dialog::Save(save));
-    }
-
-    /// The folder in which the user is at work.
-    fn folder(&self) -> PathBuf {
-        let last = self.model.remembered.recent.first().and_then(|path| path.parent());
-        let last = last.filter(|folder| folder.is_dir()).map(Path::to_owned);
-        last.or_else(default_folder).or_else(|| std::env::current_dir().ok()).unwrap_or_default()
-    }
-
-    pub(super) fn end_dialog(&mut self, context: &Context, outcome: Outcome) {
-        match outcome {
-            Outcome::Named(Purpose::Check, path) => self.tools.check.begin(context, &path, None),
-            Outcome::Named(Purpose::Compare, path) => self.display.kept.read(context, &self.model, path),
-            Outcome::Named(_, path) => self.files.open(context, path),
-            Outcome::Save(wanted) => {
-                // If this fails, writing the file tells why.
-                let _ = wanted.path.parent().map(std::fs::create_dir_all);
-                if let Err(reason) = self.save(context, wanted) {
-                    self.shell.toasts.bad(format!("Not saved: {reason}"));
-                }
-            }
-            Outcome::Leave { saves: true } => self.shell.leaves_when_saved = true,
-            Outcome::Leave { saves: false } => {
-                self.files.stop_saving();
-                context.send_viewport_cmd(ViewportCommand::Close);
-            }
-            Outcome::Stay | Outcome::Close => {}
-        }
-    }
-
-    fn save(&mut self, context: &Context, wanted: Wanted) -> Result<(), String> {
-        let Wanted { what, size, frames, samples, path } = wanted;
-        let (document, backend) = (&self.model.document, self.model.backend());
-        match what {
-            What::Scene => self.files.save_scene(context, path, document),
-            What::Picture(format) if size == document.size() => {
-                self.files.save.make(document, (format, path));
-            }
-            What::Picture(format) => {
-                let samples = samples_to_save(document, self.tracing.main.status());
-                let mut document = document.clone();
-                document.give_size(size);
-                self.files.save_rendered(context, (document, samples), backend, (format, path))?;
-            }
-            What::Animation => {
-                self.model.document.stretch(frames);
-                let mut document = self.document().clone();
-                document.give_size(size);
-                let (frames, job) = (frames.max(document.keyframes.len() as u32), document.job(1));
-                let pattern = path.join("frame-####.png");
-                let names = FrameNames::of_pattern(&pattern).ok_or("it has no name")?;
-                let output = Output { path: pattern, format: OutputFormat::Png, is_checkpoint: false };
-                let picture = BatchOptions {
-                    recipe: Recipe { samples_per_pixel: samples.into(), ..document.recipe() },
-                    job: job.map_err(|error| error.to_string())?,
-                    stage: document.stage().filter(|_| !document.has_changed_scene()),
-                    plan: Studio::plan(samples.into()),
-                    denoise: false,
-                    outputs: vec![output],
-                    every: Duration::MAX,
-                    resume: None,
-                    save_scene: None,
-                    backend,
-                    progress: ProgressChoice::Off,
-                    json: None,
-                    command: String::new(),
-                    frame: None,
-                };
-                let options =
-                    FramesOptions { picture, path: document.path(frames), frames: 0..frames, names };
-                options.check().map_err(|error| format!("{error:#}"))?;
-                self.files.save_frames(context, options)?;
-            }
-        }
-        Ok(())
-    }
-
-    pub(super) fn open_recent(&mut self, context: &Context, place: usize) {
-        let recent = &mut self.model.remembered.recent;
-        let Some(path) = recent.get(place).cloned() else { return };
-        if path.exists() {
-            self.files.open(context, path);
-        } else {
-            recent.remove(place);
-            self.shell.toasts.bad(format!("{} is no longer there; the list drops it", path.display()));
-        }
-    }
-
-    /// Opens a page in the browser, or tells its address.
-    fn open_url(&mut self, context: &Context, url: String) {
-        if !self.shell.dialogs.system.is_there || webbrowser::Browser::is_available() {
-            context.open_url(egui::OpenUrl::new_tab(url));
-        } else {
-            self.shell.toasts.bad(format!("No browser could be started; the page is {url}"));
-        }
-    }
-
-    /// Opens the companion at the stage that is shown.
-    fn show_companion(&mut self, context: &Context) {
-        match companion::page() {
-            Some(page) => self.open_url(context, companion::url(&page, self.document().stage())),
-            None => self.shell.toasts.bad(
-                "The companion is not installed beside this program; in its sources, cargo run --release -p companion \
-                 writes the page",
-            ),
-        }
     }
 }

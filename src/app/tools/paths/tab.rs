@@ -1,8 +1,9 @@
 //! The dock's tab of a path: its points in words, and the path seen from the side.
 
 use super::{Path, Paths, is_ground, side};
+use crate::app::toolkit::number::{compact, point_words};
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{choice, compact, hint, point_words, sign_button, small, tip};
+use crate::app::toolkit::widgets::{choice, hint, sign_button, small, tip};
 use crate::backends::explain::{Event, Lobe};
 use crate::progressive::describe::counted;
 use crate::scene::Scene;
