@@ -116,47 +116,25 @@ fn buttons(ui: &mut Ui, field: &egui::Response, label: &str, is_usable: bool) ->
     .inner
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Size {
-    Seen,
-    Book,
-    Twice,
-    Other,
-}
-
 /// Name, folder, format and size of what is saved.
 pub struct SaveBox {
     name: String,
     pub(super) folder: PathBuf,
-    what: What,
-    size: Size,
-    other: [u32; 2],
     was_focused: bool,
-    /// Frames of an animation, and samples per pixel of each.
-    frames: u32,
-    samples: u32,
+    wanted: Wanted,
 }
 
 impl SaveBox {
     pub fn new(document: &Document, folder: PathBuf, what: What) -> Self {
-        SaveBox {
-            name: file_name(document),
-            folder,
-            what,
-            size: Size::Seen,
-            other: document.size(),
-            was_focused: false,
-            frames: document.frame_count(),
-            samples: document
-                .stop
-                .samples
-                .map_or(FRAME_SAMPLES, |samples| samples.min(u32::MAX.into()) as u32),
-        }
+        let samples = document.stop.samples.map_or(FRAME_SAMPLES, |count| count.min(u32::MAX.into()) as u32);
+        let (size, frames) = (document.size(), document.frame_count());
+        let wanted = Wanted { what, size, frames, samples, path: PathBuf::new() };
+        SaveBox { name: file_name(document), folder, was_focused: false, wanted }
     }
 
     /// The path with the ending, which is added if the name has another.
     fn path(&self) -> PathBuf {
-        let (path, ending) = (self.folder.join(self.name.trim()), self.what.ending());
+        let (path, ending) = (self.folder.join(self.name.trim()), self.wanted.what.ending());
         if ending.is_empty() || path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending)) {
             return path;
         }
@@ -165,22 +143,13 @@ impl SaveBox {
         name.into()
     }
 
-    fn pixels(&self, size: Size, shown: &Document) -> [u32; 2] {
-        match size {
-            Size::Seen => shown.size(),
-            Size::Book => shown.origin.book_size(),
-            Size::Twice => shown.size().map(|side| side.saturating_mul(2).min(SIZE_LIMIT)),
-            Size::Other => self.other,
-        }
-    }
-
     pub(super) fn ui(&mut self, ui: &mut Ui, snapshot: &Snapshot, system: &mut System) -> Outcome {
         ui.heading("Save");
         ui.add_space(8.0);
         let field = labelled(ui, "Name", |ui| {
-            ui.weak(match self.what {
+            ui.weak(match self.wanted.what {
                 What::Animation => "/frame-0000.png".to_owned(),
-                _ => format!(".{}", self.what.ending()),
+                _ => format!(".{}", self.wanted.what.ending()),
             });
             ui.add(TextEdit::singleline(&mut self.name).desired_width(f32::INFINITY))
         });
@@ -192,7 +161,7 @@ impl SaveBox {
             !ending.is_empty() && typed.is_some_and(|typed| typed.eq_ignore_ascii_case(ending))
         };
         let of_ending = What::ALL.into_iter().find(|(.., ending)| is_typed(ending));
-        self.what = of_ending.map_or(self.what, |(what, ..)| what);
+        self.wanted.what = of_ending.map_or(self.wanted.what, |(what, ..)| what);
         labelled(ui, "Folder", |ui| {
             if system.is_there && ui.button("Change…").clicked() {
                 system.ask(ui.ctx(), Purpose::Folder, self.folder.clone());
@@ -205,26 +174,26 @@ impl SaveBox {
         ui.add_space(8.0);
         ui.columns_const(|[left, right]| {
             small(left, "What");
-            let before = self.what;
+            let before = self.wanted.what;
             let can_move = snapshot.no_rays().is_none();
             for (what, label, help, _) in What::ALL {
                 if what != What::Animation || can_move {
-                    option(left, &mut self.what, what, label, help);
+                    option(left, &mut self.wanted.what, what, label, help);
                 }
             }
-            if self.what != before && of_ending.is_some() {
+            if self.wanted.what != before && of_ending.is_some() {
                 // Instead of the ending that was typed.
                 self.name = Path::new(self.name.trim()).with_extension("").display().to_string();
             }
-            right.add_enabled_ui(self.what != What::Scene, |ui| self.sizes(ui, snapshot));
+            right.add_enabled_ui(self.wanted.what != What::Scene, |ui| self.sizes(ui, snapshot));
         });
         let (path, shown) = (self.path(), snapshot.document());
-        let size = self.pixels(self.size, shown);
+        let size = self.wanted.size;
         // A scene is saved in its own file.
-        let is_own = self.what == What::Scene && shown.origin.source == Source::File(path.clone());
+        let is_own = self.wanted.what == What::Scene && shown.origin.source == Source::File(path.clone());
         let (is_replaced, has_folder) = (path.exists() && !is_own, path.parent().is_none_or(Path::is_dir));
         let (free, mut replaces) = (if is_own { path.clone() } else { free_path(&path) }, false);
-        let is_animation = self.what == What::Animation;
+        let is_animation = self.wanted.what == What::Animation;
         match has_folder {
             _ if is_animation && path.is_dir() => ui.weak("Frames of it that are there already are kept."),
             _ if is_replaced => {
@@ -237,80 +206,68 @@ impl SaveBox {
                 .response
             }
             false => ui.weak("The folder will be created."),
-            true if self.what != What::Scene && shown.size() != size => {
+            true if self.wanted.what != What::Scene && shown.size() != size => {
                 ui.weak("Renders first; you can keep working.")
             }
             true => ui.label(""),
         };
         let is_usable = !self.name.trim().is_empty() && path.is_dir() <= is_animation;
         match buttons(ui, &field, "Save", is_usable) {
-            _ if replaces && is_usable => Outcome::Save(self.wanted(size, path)),
-            Some(true) => Outcome::Save(self.wanted(size, if is_animation { path } else { free })),
+            _ if replaces && is_usable => Outcome::Save(self.wanted(path)),
+            Some(true) => Outcome::Save(self.wanted(if is_animation { path } else { free })),
             Some(false) => Outcome::Close,
             None => Outcome::Stay,
         }
     }
 
-    fn wanted(&self, size: [u32; 2], path: PathBuf) -> Wanted {
-        let SaveBox { what, frames, samples, .. } = *self;
-        Wanted { what, size, frames, samples, path }
+    fn wanted(&self, path: PathBuf) -> Wanted {
+        Wanted { path, ..self.wanted.clone() }
     }
 
     /// How long an animation is, and how fine.
     fn film(&mut self, ui: &mut Ui, snapshot: &Snapshot) {
         for (name, help, count, least, most) in [
-            ("Frames", "30 make a second", &mut self.frames, 2.0, FRAME_LIMIT),
-            ("Samples", "Samples per pixel of each frame", &mut self.samples, 1.0, u32::MAX),
+            ("Frames", "30 make a second", &mut self.wanted.frames, 2.0, FRAME_LIMIT),
+            ("Samples", "Samples per pixel of each frame", &mut self.wanted.samples, 1.0, u32::MAX),
         ] {
             let about = About::new(name, help);
             row(ui, about, |ui| Number::new(about, least..=f64::from(most)).whole_field(ui, FIELD, count));
         }
-        let (size, paths) =
-            (self.pixels(self.size, snapshot.document()), u64::from(self.samples) * u64::from(self.frames));
-        let seconds = seconds_at(&snapshot.status, size, paths);
+        let Wanted { size, frames, samples, .. } = self.wanted;
+        let seconds = seconds_at(&snapshot.status, size, u64::from(samples) * u64::from(frames));
         let time = seconds.map_or_else(String::new, |seconds| format!(", about {} to render", time(seconds)));
-        small(ui, format!("{:.1} s{time}", f64::from(self.frames) / FRAMES_PER_SECOND));
+        small(ui, format!("{:.1} s{time}", f64::from(frames) / FRAMES_PER_SECOND));
     }
 
     fn sizes(&mut self, ui: &mut Ui, snapshot: &Snapshot) {
         small(ui, "Size");
-        for (size, label) in [
-            (Size::Seen, "As it is rendered"),
-            (
-                Size::Book,
-                if snapshot.document().stage().is_some() { "As in the book" } else { "As in the scene" },
-            ),
-            (Size::Twice, "Twice as large"),
-            (Size::Other, "Other"),
-        ] {
-            let [width, height] = self.pixels(size, snapshot.document());
-            let samples = samples_to_save(snapshot.document(), &snapshot.status);
-            let when = match seconds_at(&snapshot.status, [width, height], samples) {
-                _ if self.what == What::Animation => String::new(),
-                _ if snapshot.document().size() == [width, height] => ", ready".to_owned(),
-                Some(seconds) => format!(", {}, about {}", samples_words(samples), time(seconds)),
-                None => String::new(),
-            };
-            let help = match size {
-                Size::Other if self.size != size => "Width and height".to_owned(),
-                _ => format!("{width} × {height}{when}"),
-            };
-            option(ui, &mut self.size, size, label, &help);
+        let (shown, size) = (snapshot.document(), &mut self.wanted.size);
+        let before = *size;
+        ui.horizontal(|ui| {
+            for (name, side) in ["Width", "Height"].into_iter().zip(&mut *size) {
+                let number = Number::new(About::new(name, "Pixels"), 1.0..=f64::from(SIZE_LIMIT));
+                number.whole_field(ui, FIELD, side);
+            }
+        });
+        if *size != before {
+            *size = in_shape(shown.size(), before, *size);
         }
-        if self.size == Size::Other {
-            let before = self.other;
-            ui.horizontal(|ui| {
-                for (name, side) in ["Width", "Height"].into_iter().zip(&mut self.other) {
-                    let number = Number::new(About::new(name, "Pixels"), 1.0..=f64::from(SIZE_LIMIT));
-                    number.whole_field(ui, FIELD, side);
-                }
-            });
-            if self.other != before {
-                self.other = in_shape(snapshot.document().size(), before, self.other);
+        let book = if shown.stage().is_some() { "As in the book" } else { "As in the scene" };
+        let twice = shown.size().map(|side| side.saturating_mul(2).min(SIZE_LIMIT));
+        for (name, of) in
+            [("As it is rendered", shown.size()), (book, shown.origin.book_size()), ("Twice as large", twice)]
+        {
+            if ui.selectable_label(*size == of, name).clicked() {
+                *size = of;
             }
         }
-        if self.what == What::Animation {
-            self.film(ui, snapshot);
+        let samples = samples_to_save(shown, &snapshot.status);
+        match seconds_at(&snapshot.status, *size, samples) {
+            _ if self.wanted.what == What::Animation => self.film(ui, snapshot),
+            Some(seconds) if shown.size() != *size => {
+                small(ui, format!("{}, about {}", samples_words(samples), time(seconds)));
+            }
+            _ => {}
         }
     }
 }

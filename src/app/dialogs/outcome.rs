@@ -18,6 +18,7 @@ pub enum Outcome {
 }
 
 /// The choices of the dialog of saving.
+#[derive(Clone)]
 pub struct Wanted {
     pub what: What,
     /// Width and height of the picture.

@@ -38,7 +38,6 @@ struct Step {
     camera: Camera,
     settings: RenderSettings,
     has_own_size: bool,
-    is_from_file: bool,
     #[serde(default)]
     bookmarks: Vec<(u32, Camera)>,
     /// Samples, seconds, error.
@@ -57,7 +56,7 @@ pub fn to_text(documents: &[Document]) -> String {
         })
     };
     for document in documents {
-        let Document { origin, checked, camera, settings, has_own_size, is_from_file, .. } = document.clone();
+        let Document { origin, checked, camera, settings, has_own_size, .. } = document.clone();
         let Stop { samples, seconds, noise, .. } = document.stop;
         let from = match &origin.source {
             Source::Stage(stage) => From::Stage(stage.id.to_owned()),
@@ -68,16 +67,7 @@ pub fn to_text(documents: &[Document]) -> String {
         let scene = scene.then(|| place(Arc::as_ptr(&checked).addr(), &|| document.recipe()));
         let stop = (samples, seconds, noise);
         let bookmarks = document.keyframes.iter().map(|keyframe| (keyframe.frame, keyframe.camera)).collect();
-        edits.steps.push(Step {
-            origin: from,
-            scene,
-            camera,
-            settings,
-            has_own_size,
-            is_from_file,
-            bookmarks,
-            stop,
-        });
+        edits.steps.push(Step { origin: from, scene, camera, settings, has_own_size, bookmarks, stop });
     }
     serde_json::to_string(&edits).unwrap_or_default()
 }
@@ -116,7 +106,6 @@ pub fn read(path: &Path) -> Vec<Document> {
                 .collect(),
             settings: step.settings,
             has_own_size: step.has_own_size,
-            is_from_file: step.is_from_file,
             stop: Stop { samples, seconds, noise, ..Stop::default() },
         };
         documents.push((step, document));

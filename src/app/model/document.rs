@@ -33,8 +33,6 @@ pub struct Document {
     pub has_own_size: bool,
     /// When the render ends.
     pub stop: Stop,
-    /// The picture is a file's: its stop is not the user's choice for others.
-    pub is_from_file: bool,
 }
 
 impl PartialEq for Document {
@@ -68,7 +66,6 @@ impl Document {
             stop: origin.usual_stop(),
             checked: Arc::clone(&origin.scene),
             has_own_size: origin.keeps_size(),
-            is_from_file: matches!(origin.source, Source::File(_) | Source::Embedded),
             camera,
             settings,
             origin,
@@ -80,7 +77,7 @@ impl Document {
         let document = Document::new(Origin::guess(recipe, stage));
         let Recipe { camera, settings, .. } = *recipe;
         let keyframes = recipe.keyframes.clone();
-        Document { camera, keyframes, settings, has_own_size: true, is_from_file: true, ..document }
+        Document { camera, keyframes, settings, has_own_size: true, ..document }
     }
 
     /// Resets everything to the origin's values. A size that follows the viewport or the book stays.
@@ -89,12 +86,6 @@ impl Document {
         if !before.has_own_size && !self.has_own_size {
             self.set_size(before.size());
         }
-    }
-
-    /// The user's own way to stop, which other pictures take over; none if it is this picture's alone.
-    pub fn own_stop(&self) -> Option<Stop> {
-        let is_own = self.stop != self.origin.usual_stop() && self.stop.samples.is_none();
-        (is_own && !self.is_from_file).then_some(self.stop)
     }
 
     /// A name for the change from `other`, which was before.

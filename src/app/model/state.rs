@@ -3,7 +3,6 @@
 use super::animation::Play;
 use super::{Device, DeviceOptions, Document, Mode, Partner, Remembered, Show, Tab, ViewState};
 use crate::backends::BackendChoice;
-use crate::progressive::Stop;
 use crate::stages::{Shading, Stage};
 
 /// A presentation: full screen, the picture with large captions, no panels.
@@ -22,8 +21,6 @@ pub struct Presentation {
 pub struct Model {
     /// The picture being edited.
     pub document: Document,
-    /// The user's own way to stop, which other stages take over.
-    pub own_stop: Option<Stop>,
     /// The selected sphere.
     pub selected: Option<usize>,
     /// The current view and comparison.

@@ -4,7 +4,9 @@ use crate::app::commands::{Command, PanelContext};
 use crate::app::model::{Dock, Partner};
 use crate::app::toolkit::number::samples_words;
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{About, caption, command_button, command_switch, entry, list, small};
+use crate::app::toolkit::widgets::{
+    About, caption, command_button, command_entry, command_switch, list, small,
+};
 use crate::stages::Stage;
 use eframe::egui::{Label, RichText, Ui};
 
@@ -32,13 +34,7 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
 }
 
 fn partners(ui: &mut Ui, cx: &PanelContext) {
-    let choose = |ui: &mut Ui, command: Command| {
-        let (name, reason) = (cx.name(command), cx.disabled_reason(command));
-        let about = About::new(&name, command.help()).disabled_if(reason.as_deref());
-        if entry(ui, cx.is_on(command), about) {
-            cx.send(command);
-        }
-    };
+    let choose = |ui: &mut Ui, command: Command| command_entry(ui, cx, command, &cx.name(command));
     for partner in cx.model.partners() {
         choose(ui, Command::CompareWith(partner));
     }

@@ -3,7 +3,7 @@
 use crate::app::commands::{Command, PanelContext};
 use crate::app::model::{Show, Tone, ViewState};
 use crate::app::toolkit::number::{Number, compact};
-use crate::app::toolkit::widgets::{About, Header, add_command, entry, fold, list};
+use crate::app::toolkit::widgets::{About, Header, add_command, command_entry, fold, list};
 use eframe::egui::{Checkbox, Ui};
 
 /// Draws the view and its brightness.
@@ -19,13 +19,7 @@ pub fn ui(ui: &mut Ui, view: &mut ViewState, cx: &PanelContext) {
     fold(ui, header, false, |ui| {
         let about = About::new("Show", "What is shown; files are saved as Picture");
         list(ui, about, show.name(), |ui| {
-            for show in Show::ALL {
-                let (command, reason) = (Command::Show(show), cx.model.useless_show(show));
-                let about = About::new(show.name(), command.help()).disabled_if(reason.as_deref());
-                if entry(ui, cx.is_on(command), about) {
-                    cx.send(command);
-                }
-            }
+            Show::ALL.iter().for_each(|show| command_entry(ui, cx, Command::Show(*show), show.name()));
         });
         let mut is_denoised = view.is_denoised;
         let denoise = Checkbox::new(&mut is_denoised, Command::Denoise.name());

@@ -245,6 +245,14 @@ pub fn entry(ui: &mut Ui, is_on: bool, about: About<'_>) -> bool {
     is_chosen
 }
 
+/// An entry for a command, under this name.
+pub fn command_entry(ui: &mut Ui, cx: &PanelContext, command: Command, name: &str) {
+    let reason = cx.disabled_reason(command);
+    if entry(ui, cx.is_on(command), About::new(name, command.help()).disabled_if(reason.as_deref())) {
+        cx.send(command);
+    }
+}
+
 /// A check box.
 pub fn check(ui: &mut Ui, about: About<'_>, value: &mut bool) -> Response {
     let response = ui.add_enabled(about.disabled_reason.is_none(), egui::Checkbox::new(value, about.name));

@@ -101,7 +101,6 @@ impl Window {
                 document,
                 selected: None,
                 view,
-                own_stop: None,
                 remembered,
                 devices: DeviceOptions::of(&options.backend),
                 is_paused: false,
@@ -248,11 +247,6 @@ impl Window {
             self.model.document.camera = self.changes.last.camera;
         }
         self.shell.toasts.follow(&self.model.document);
-        let document = &self.model.document;
-        // A picture without noise ends at its own number of samples, whatever the user prefers.
-        if !document.is_from_file && document.origin.usual_stop().samples.is_none() {
-            self.model.own_stop = document.own_stop();
-        }
         let room = self.display.viewport.room_pixels;
         // The dock opens when devices are compared, but their films stay.
         let needs_film = self.files.needs_film() || self.model.other_device().is_some();

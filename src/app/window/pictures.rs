@@ -12,7 +12,7 @@ impl Window {
     pub(super) fn show_origin(&mut self, origin: Origin) {
         let document = self.fresh(origin);
         let before = self.document();
-        if before.is_changed() && !before.is_from_file {
+        if before.is_changed() {
             let words = format!("Your changes to {} are kept in Undo", before.place());
             self.shell.toasts.good_with(words, &[Command::Undo]);
         }
@@ -22,11 +22,8 @@ impl Window {
     /// A picture from this origin, with what the user has chosen for it.
     pub(super) fn fresh(&self, origin: Origin) -> Document {
         let mut document = Document::new(origin);
-        if let Some(stop) = self.model.own_stop.filter(|_| document.stop.samples.is_none()) {
-            document.stop = stop;
-        }
         // Bookmarks and the end of a picture are there again when one comes back to it.
-        let known = self.changes.last_of(&document.origin.source).filter(|_| !document.is_from_file);
+        let known = self.changes.last_of(&document.origin.source);
         if let Some(known) = known.filter(|known| known.origin.source != Source::New) {
             document.keyframes.clone_from(&known.keyframes);
             if known.stop != known.origin.usual_stop() {

@@ -94,7 +94,7 @@ impl Window {
             Kind::Scene => Document::new(Origin::new(saved.recipe.clone(), Source::File(saved.path.clone()))),
             _ => Document::of_film(&saved.recipe, saved.stage()),
         };
-        (document.has_own_size, document.is_from_file) = (true, true);
+        document.has_own_size = true;
         if let Some(samples) = saved.samples().filter(|_| film.is_none()) {
             document.stop = Stop::at_samples(samples);
         }
