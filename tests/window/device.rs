@@ -18,7 +18,9 @@ fn another_device_continues_the_film() {
     let parts: u64 = status.contributions.iter().map(|part| part.samples_per_pixel).sum();
     assert_eq!(parts, status.samples_per_pixel);
     send(&mut harness, Command::Device(Device::Cpu));
-    until(&mut harness, "three contributions", |window| window.status().contributions.len() == 3);
+    until(&mut harness, "the CPU", |window| {
+        window.status().backend.as_ref().is_some_and(|backend| backend.name == "cpu")
+    });
     assert_eq!(harness.state().status().run, run);
 }
 

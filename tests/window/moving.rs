@@ -1,9 +1,9 @@
 //! Moving about: orbits and the wheel at what is under the pointer.
 
-use crate::harness::{control, drag_from, has_samples, hold, open, scroll, send, until};
+use crate::harness::{drag_from, has_samples, hold, open, scroll, send, until};
 use crate::objects::on_screen;
 use crate::questions::Ask as _;
-use eframe::egui::{self, Pos2, Shape, vec2};
+use eframe::egui::{self, Pos2, vec2};
 use egui_kittest::Harness;
 use glam::DVec3;
 use weekender::app::{Command, Window};
@@ -35,27 +35,17 @@ fn aside(harness: &Harness<'_, Window>) -> Pos2 {
     on_screen(harness, DVec3::new(-1.0, 0.2, -1.0))
 }
 
-/// Whether the pivot is marked at this point of the screen.
-fn is_marked(harness: &Harness<'_, Window>, at: Pos2) -> bool {
-    let shapes = &harness.output().shapes;
-    shapes.iter().any(|clipped| {
-        matches!(&clipped.shape, Shape::Circle(circle) if circle.center.distance(at) < 1.5 && circle.radius == 6.0)
-    })
-}
-
 #[test]
 fn a_drag_turns_about_what_was_under_the_pointer() {
     let mut harness = opened("view-distant");
     let (start, before) = (aside(&harness), camera(&harness));
     let pivot = under(&harness, start).expect("a sphere");
     hold(&mut harness, start, true);
-    assert!(!is_marked(&harness, start), "nothing turns yet");
     for step in 1..=12 {
         harness.event(egui::Event::PointerMoved(start + vec2(9.0, 4.0) * step as f32));
         harness.step();
         let now = on_screen(&harness, pivot);
         assert!(now.distance(start) < 1.0, "step {step}: the pivot went from {start} to {now}");
-        assert!(step < 2 || is_marked(&harness, start), "step {step}");
     }
     let after = camera(&harness);
     assert!(after.look_from.distance(before.look_from) > 0.3 && after.look_at != before.look_at);
@@ -63,7 +53,6 @@ fn a_drag_turns_about_what_was_under_the_pointer() {
     assert!((ahead(&after) / ahead(&before) - 1.0).abs() < 1e-9, "look_at keeps its distance");
     hold(&mut harness, start + vec2(108.0, 48.0), false);
     harness.step();
-    assert!(!is_marked(&harness, start));
     send(&mut harness, Command::Undo);
     assert_eq!(camera(&harness), before);
 }
@@ -106,20 +95,4 @@ fn a_drag_upwards_leaves_the_eye_above_the_ground() {
     }
     assert!(camera(&harness).look_from.y > 0.1, "{:?}", camera(&harness));
     assert!(camera(&harness).look_from.length() < 60.0, "{:?}", camera(&harness));
-}
-
-#[test]
-fn a_drag_that_loses_the_scene_offers_the_way_back() {
-    let mut harness = opened("view-distant");
-    let home = camera(&harness);
-    let camera = harness.state().shown_document().camera;
-    let away = Camera { look_at: camera.look_from + DVec3::new(-1.0, 0.5, 9.0), ..camera };
-    harness.state_mut().document_mut().camera = away;
-    harness.run_steps(2);
-    let sky = harness.state().picture_rect().lerp_inside(vec2(0.5, 0.1));
-    drag_from(&mut harness, sky, vec2(4.0, 8.0));
-    harness.run_steps(60);
-    control(&harness, "Home");
-    send(&mut harness, Command::Home);
-    assert_eq!(harness.state().shown_document().camera, home);
 }

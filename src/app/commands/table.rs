@@ -393,7 +393,9 @@ impl Command {
             Command::Recent(_) => "Opens it again",
             Command::Bookmark(_) => "Jumps to this camera",
             Command::Field(_) => "Goes to this field of the controls",
-            Command::CompareWith(partner) => partner.help(),
+            Command::CompareWith(Partner::Book) => {
+                "By the book’s quadratic and its minimum distance of 0.001"
+            }
             _ => self.row().map_or("", |row| row.help),
         }
     }
@@ -446,10 +448,7 @@ impl Snapshot {
 
     /// Why a command is unavailable; `None` if it is available.
     pub fn disabled_reason(&self, command: Command) -> Option<String> {
-        match command {
-            Command::CompareWith(partner) => self.model.no_partner(partner),
-            _ => command.row().and_then(|row| (row.off)(self)),
-        }
+        command.row().and_then(|row| (row.off)(self))
     }
 
     /// Whether a command's switch is on; `None` if it is not a switch.

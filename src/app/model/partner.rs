@@ -49,21 +49,6 @@ impl Partner {
         }
     }
 
-    /// One sentence about it.
-    pub fn help(self) -> &'static str {
-        match self {
-            Partner::Usual | Partner::Stage(_) => {
-                "Another stage, seen by the same camera if the scene is the same"
-            }
-            Partner::Book => {
-                "The same picture with the book’s own quadratic and its minimum distance of 0.001"
-            }
-            Partner::Device(_) => "The same samples on this device, which takes turns with the other one",
-            Partner::Kept(_) => "A picture that does not change",
-            Partner::Mine => "The picture of your own program, beside that of its stage",
-        }
-    }
-
     /// The names of the picture that is compared with it: what tells the two apart.
     pub fn names_of_mine(self, document: &Document, device: Device) -> [String; 2] {
         let both = |name: &str| [name.to_owned(), name.to_owned()];

@@ -108,20 +108,10 @@ impl Model {
         }
     }
 
-    /// Why the picture cannot be compared with its partner; `None` if it can.
+    /// Why the picture cannot be compared; `None` if it can.
     pub fn nothing_to_compare(&self) -> Option<String> {
-        match self.view.partner(&self.document) {
-            Some(partner) => self.no_partner(partner),
-            None => Some("There is nothing to compare this picture with; choose something".to_owned()),
-        }
-    }
-
-    /// Why this partner is unavailable; `None` if it is available.
-    pub fn no_partner(&self, partner: Partner) -> Option<String> {
-        match partner {
-            Partner::Device(device) => device.unavailable(),
-            _ => None,
-        }
+        let is_alone = self.view.partner(&self.document).is_none();
+        is_alone.then(|| "There is nothing to compare this picture with; choose something".to_owned())
     }
 
     /// Why the two cannot be subtracted; `None` if they can.

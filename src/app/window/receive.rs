@@ -20,7 +20,8 @@ impl Window {
                 Some(Made::File(path, scene)) => {
                     scene.iter().for_each(|saved| self.take_file(&path, saved));
                     self.model.remembered.note_recent(&path);
-                    self.shell.toasts.good(format!("Saved {}", path.display()));
+                    let folder = path.parent().unwrap_or(&path).display();
+                    self.shell.toasts.good(format!("Saved {} in {folder}", name_of(&path)));
                 }
                 Some(Made::Frames(count, folder)) => {
                     let frames = counted(count.into(), "frame");
