@@ -110,9 +110,10 @@ impl Toasts {
         self.0.retain(|toast| !toast.subject().is_some_and(|subject| subject.starts_with("Not ")));
     }
 
-    /// Closes the newest message that stays. Returns whether there was one.
+    /// Closes the newest message that stays, except one of work in progress. Returns whether there was one.
     pub fn close_newest(&mut self) -> bool {
-        let newest = self.0.iter().rposition(|toast| toast.stays);
+        let is_closed = |toast: &Toast| toast.stays && !toast.offers.contains(&Command::StopSaving);
+        let newest = self.0.iter().rposition(is_closed);
         newest.map(|newest| self.0.remove(newest)).is_some()
     }
 

@@ -155,7 +155,7 @@ impl Second {
         let Some((partner, origin)) =
             partner.and_then(|partner| Some((partner, self.origin_of(partner, want.document)?)))
         else {
-            self.rest(want.document);
+            self.rest(context, want.document);
             return model.view.kept_partner().is_some();
         };
         if self.tracer.is_none() {
@@ -186,16 +186,18 @@ impl Second {
     }
 
     /// Keeps the film for the next comparison of the same picture.
-    fn rest(&mut self, mine: &Document) {
+    fn rest(&mut self, context: &Context, mine: &Document) {
         let is_of = |(_, origin, scene, _): &Of| {
             Arc::ptr_eq(origin, &mine.origin) && Arc::ptr_eq(scene, &mine.checked)
         };
         if !self.of.as_ref().is_some_and(is_of) {
             self.tracer.iter_mut().for_each(Tracer::abandon);
             self.of = None;
-        } else if let Some(tracer) = self.tracer.as_ref().filter(|tracer| tracer.status().phase.is_working())
-        {
-            tracer.progressive.pause();
+        } else if let Some(tracer) = &mut self.tracer {
+            tracer.poll(context);
+            if tracer.status().phase.is_working() {
+                tracer.progressive.pause();
+            }
         }
     }
 

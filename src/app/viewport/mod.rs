@@ -95,7 +95,7 @@ impl Viewport {
         let at = at.or(response.hover_pos());
         let is_over_other = at.is_some_and(|at| view.is_other(place_at(rect, at)[0]));
         let is_same_scene = matches!(view.compared(live), Some(Partner::Device(_) | Partner::Book));
-        let is_covered = is_over_other && !is_same_scene;
+        let is_covered = view.is_hidden() || is_over_other && !is_same_scene;
         let is_hidden = view.is_hidden() || is_over_other && view.kept_partner().is_some();
         if !is_covered && !is_held {
             (is_held, touch.is_move) = self.selection.handle(ui, &response, rect, cx);
