@@ -60,7 +60,7 @@ fn a_denoised_picture_is_shown_measured_and_saved() {
     let raw = shown(harness.state());
     send(&mut harness, Command::Denoise);
     until(&mut harness, "the denoised picture", |window| shown(window) != raw);
-    until_seen(&mut harness, "denoised: error");
+    until_seen(&mut harness, ": error");
     let mean = mean(&mut harness, AT);
     let transfer = harness.state().shown_document().rules().transfer;
     let seen = mean.map(|x| to_byte(x, transfer, AT[1] as usize, 18));
@@ -78,7 +78,7 @@ fn a_denoised_picture_is_shown_measured_and_saved() {
 fn a_saved_denoised_picture_has_all_samples() {
     let mut harness = open("--stage glass-schlick --size 32x18 --samples 4000000000");
     send(&mut harness, Command::Denoise);
-    until_seen(&mut harness, "denoised: error");
+    until_seen(&mut harness, ": error");
     send(&mut harness, Command::Pause);
     until(&mut harness, "the pause", |window| window.status().phase == Phase::Paused);
     let samples = |window: &Window| window.status().samples_per_pixel;

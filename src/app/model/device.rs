@@ -119,6 +119,11 @@ impl Device {
         }
     }
 
+    /// Whether it stands in the bar: the CPU alone where no graphics card is.
+    pub fn is_shown(self) -> bool {
+        self == Device::Cpu || self == Device::Gpu && adapter().is_ok_and(|adapter| !adapter.is_software)
+    }
+
     /// Why the device is not available, in words; `None` if it is.
     pub fn unavailable(self) -> Option<String> {
         match self {

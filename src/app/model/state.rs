@@ -3,6 +3,7 @@
 use super::animation::Play;
 use super::{Device, DeviceOptions, Document, Mode, Partner, Remembered, Show, Tab, ViewState};
 use crate::backends::BackendChoice;
+use crate::progressive::Stop;
 use crate::stages::{Shading, Stage};
 
 /// A presentation: full screen, the picture with large captions, no panels.
@@ -21,6 +22,8 @@ pub struct Presentation {
 pub struct Model {
     /// The picture being edited.
     pub document: Document,
+    /// The end that the user has chosen last, which other pictures take over; none in samples, which are a picture's own.
+    pub own_stop: Option<Stop>,
     /// The selected sphere.
     pub selected: Option<usize>,
     /// The current view and comparison.

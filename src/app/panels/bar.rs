@@ -118,7 +118,9 @@ fn step(ui: &mut Ui, cx: &PanelContext, command: Command, sign: &str) {
 }
 
 fn device(ui: &mut Ui, cx: &PanelContext) {
-    let devices = [Device::Cpu, Device::Gpu].into_iter().filter(|device| device.unavailable().is_none());
+    let chosen = cx.model.remembered.device;
+    let devices =
+        [Device::Cpu, Device::Gpu].into_iter().filter(|device| device.is_shown() || *device == chosen);
     let devices: Vec<_> = devices.map(|device| (device.label(), Command::Device(device))).collect();
     command_switch(ui, cx, DEVICE, &devices);
 }

@@ -53,7 +53,12 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext, numbers: Option<impl FnOnce(&mut Ui)>)
         // Whatever stands there, the picture keeps its room.
         let room = ui.available_rect_before_wrap();
         ui.allocate_rect(room, Sense::hover());
-        columns(&mut ui.new_child(UiBuilder::new().max_rect(room)), unit, texts(cx), numbers);
+        columns(
+            &mut ui.new_child(UiBuilder::new().max_rect(room)),
+            unit,
+            texts(cx),
+            (numbers, cx.model.view.mode().is_some()),
+        );
     });
     let title_bar = Panel::top("present title").exact_size(9.0 * unit).show_separator_line(false);
     title_bar.frame(frame(margin)).show(ui, |ui| ui.horizontal_centered(|ui| title(ui, unit, cx)));
@@ -141,7 +146,12 @@ fn texts(snapshot: &Snapshot) -> [(&'static str, &'static str); 2] {
 }
 
 /// Two texts side by side, as large as both have room.
-fn columns(ui: &mut Ui, unit: f32, texts: [(&str, &str); 2], mut numbers: Option<impl FnOnce(&mut Ui)>) {
+fn columns(
+    ui: &mut Ui,
+    unit: f32,
+    texts: [(&str, &str); 2],
+    (mut numbers, is_compared): (Option<impl FnOnce(&mut Ui)>, bool),
+) {
     let (gap, heading) = (MARGIN * unit, 2.0 * unit);
     let width = 0.5 * (ui.available_width() - gap);
     let room = ui.available_height() - 2.5 * heading;
@@ -160,12 +170,13 @@ fn columns(ui: &mut Ui, unit: f32, texts: [(&str, &str); 2], mut numbers: Option
                 ui.set_width(width);
                 if let Some(numbers) = numbers.take_if(|_| place == 1) {
                     enlarge(&ui.ctx().clone(), ui.style_mut());
-                    // Under their header, five rows of a line and a third have room.
-                    let most = (rows - 28.0) / (5.0 * 4.0 / 3.0);
+                    // Under their header, three or five rows of a line and a third have room.
+                    let count = if is_compared { 5.0 } else { 3.0 };
+                    let most = (rows - 28.0) / (count * 4.0 / 3.0);
                     let small = ui.style_mut().text_styles.get_mut(&TextStyle::Small);
                     small.into_iter().for_each(|font| font.size = font.size.min(most));
-                    ui.set_max_width(width.min(28.0 * TextStyle::Small.resolve(ui.style()).size));
-                    return numbers(ui);
+                    let width = width.min(28.0 * TextStyle::Small.resolve(ui.style()).size);
+                    return ui.allocate_ui(vec2(width, rows), numbers).inner;
                 }
                 ui.label(RichText::new(name).size(heading).color(theme::colours(ui).accent));
                 ui.add(Label::new(RichText::new(text).size(size).color(theme::colours(ui).strong)).wrap());

@@ -25,6 +25,7 @@ use crate::job::recipe::Recipe;
 use anyhow::{Context as _, Result};
 use eframe::egui;
 use shell::Shell;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// The window of the program.
@@ -99,6 +100,7 @@ impl Window {
             changes: Changes::of_steps(&steps, document.clone()),
             model: Model {
                 document,
+                own_stop: options.stop.filter(|stop| stop.samples.is_none()),
                 selected: None,
                 view,
                 remembered,
@@ -247,6 +249,10 @@ impl Window {
             self.model.document.camera = self.changes.last.camera;
         }
         self.shell.toasts.follow(&self.model.document);
+        let (document, last) = (&self.model.document, &self.changes.last);
+        if document.stop != last.stop && Arc::ptr_eq(&document.origin, &last.origin) {
+            self.model.own_stop = Some(document.stop).filter(|stop| stop.samples.is_none());
+        }
         let room = self.display.viewport.room_pixels;
         // The dock opens when devices are compared, but their films stay.
         let needs_film = self.files.needs_film() || self.model.other_device().is_some();

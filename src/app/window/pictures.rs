@@ -22,6 +22,9 @@ impl Window {
     /// A picture from this origin, with what the user has chosen for it.
     pub(super) fn fresh(&self, origin: Origin) -> Document {
         let mut document = Document::new(origin);
+        if let Some(stop) = self.model.own_stop.filter(|_| document.stop.samples.is_none()) {
+            document.stop = stop;
+        }
         // Bookmarks and the end of a picture are there again when one comes back to it.
         let known = self.changes.last_of(&document.origin.source);
         if let Some(known) = known.filter(|known| known.origin.source != Source::New) {
