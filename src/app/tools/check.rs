@@ -43,7 +43,7 @@ impl Checked {
 
 enum News {
     Read(Arc<Kept>),
-    Judged(Checked),
+    Judged(Box<Checked>),
 }
 
 /// The check of a picture, which a background thread repeats whenever the file has changed.
@@ -98,7 +98,7 @@ impl Check {
                 });
                 if let Some(found) = found.transpose() {
                     say(None);
-                    answer.give(found.map(News::Judged));
+                    answer.give(found.map(|found| News::Judged(Box::new(found))));
                 }
                 sleep(POLL_INTERVAL);
             }
@@ -126,7 +126,7 @@ impl Check {
                     (self.mine, self.is_old) = (Some(mine), true);
                     continue;
                 }
-                Ok(News::Judged(checked)) => checked,
+                Ok(News::Judged(checked)) => *checked,
                 Err(reason) => Checked::of(Err(anyhow::Error::msg(reason)), self.name()),
             };
             (self.mine, self.is_old) = (checked.compared.as_ref().map(|(_, mine)| Arc::clone(mine)), false);

@@ -57,14 +57,18 @@ pub struct Readout {
 /// Column and row, of a picture of this run: that of the traced one, or a partner and its run.
 type Of<Run> = ([u32; 2], Run);
 
+/// By pixel, film and number of samples.
+type Mine = Query<([u32; 2], PictureId, u64), (Of<u64>, Pixel)>;
+
+/// None where the other picture has no pixel.
+type Theirs = Query<([u32; 2], OtherId), (Of<(Partner, u64)>, Option<Pixel>)>;
+
 /// The pixel under the pointer and what is known about it.
 #[derive(Default)]
 pub struct Inspector {
     pub hovered: Option<[u32; 2]>,
-    /// By pixel, film and number of samples.
-    mine: Query<([u32; 2], PictureId, u64), (Of<u64>, Pixel)>,
-    /// None where the other picture has no pixel.
-    theirs: Query<([u32; 2], OtherId), (Of<(Partner, u64)>, Option<Pixel>)>,
+    mine: Mine,
+    theirs: Theirs,
     readout: Option<Readout>,
 }
 
