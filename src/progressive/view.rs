@@ -72,17 +72,6 @@ fn standard_errors(film: &Film) -> Vec<f64> {
 }
 
 impl View {
-    /// The scale of the heat map; `None` for the picture itself.
-    pub fn scale(&self) -> Option<HeatScale> {
-        match self {
-            View::Picture | View::Exposed(_) => None,
-            View::Luminance(stops) => Some(HeatScale::luminance(*stops)),
-            View::StandardError => Some(HeatScale::ERROR),
-            View::Difference(_) => Some(HeatScale::DIFFERENCE),
-            View::Denoised(_, view) => view.scale(),
-        }
-    }
-
     /// Whether `other` shows the same. References are compared by their addresses.
     pub fn is_same(&self, other: &View) -> bool {
         match (self, other) {
@@ -96,30 +85,31 @@ impl View {
 
     /// Resolves the film in this view: three bytes per pixel, top row first.
     pub fn resolve(&self, film: &Film, transfer: Transfer) -> Vec<u8> {
-        let scale = self.scale().unwrap_or(HeatScale::ERROR);
-        let heat = |value: &dyn Fn(usize) -> f64| -> Vec<u8> {
+        let heat = |scale: HeatScale, value: &dyn Fn(usize) -> f64| -> Vec<u8> {
             let pixels = film.width() as usize * film.height() as usize;
             (0..pixels).flat_map(|pixel| scale.colour(value(pixel))).collect()
         };
         match self {
             View::StandardError => {
                 let errors = standard_errors(film);
-                heat(&|pixel| errors[pixel])
+                heat(HeatScale::ERROR, &|pixel| errors[pixel])
             }
             View::Difference(reference)
                 if (reference.width, reference.height) == (film.width(), film.height()) =>
             {
-                heat(&|pixel| {
+                heat(HeatScale::DIFFERENCE, &|pixel| {
                     let (mean, other) = (film.mean(pixel), reference.means[pixel]);
                     root_mean_square([0, 1, 2].map(|i| mean[i] - f64::from(other[i])))
                 })
             }
-            View::Luminance(_) => heat(&|pixel| luminance(film.mean(pixel))),
+            View::Luminance(stops) => {
+                heat(HeatScale::luminance(*stops), &|pixel| luminance(film.mean(pixel)))
+            }
             View::Exposed(stops) => film.exposed(transfer, *stops),
             View::Picture | View::Difference(_) => film.to_rgb8(transfer),
             View::Denoised(denoised, view) if !denoised.is_of(film) => view.resolve(film, transfer),
             View::Denoised(denoised, view) if **view == View::StandardError => {
-                heat(&|pixel| f64::from(denoised.errors[pixel]))
+                heat(HeatScale::ERROR, &|pixel| f64::from(denoised.errors[pixel]))
             }
             View::Denoised(denoised, view) => view.resolve(&denoised.film, transfer),
         }
