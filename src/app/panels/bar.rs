@@ -55,7 +55,8 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
 /// The stage in the middle of the window; device, pause and save at the right.
 fn actions(ui: &mut Ui, cx: &PanelContext) {
     let gap = ui.spacing().item_spacing.x;
-    let at_right = 2.0 * DEVICE + PAUSE + SAVE + 4.0 * gap;
+    let devices = devices(cx);
+    let at_right = devices.len() as f32 * DEVICE + PAUSE + SAVE + 4.0 * gap;
     let window = ui.ctx().content_rect();
     let wanted = if window.width() < WITH_TITLE { 100.0 } else { STAGE } + 56.0;
     let room = ui.available_width() - at_right;
@@ -65,7 +66,7 @@ fn actions(ui: &mut Ui, cx: &PanelContext) {
     let layout = Layout::left_to_right(Align::Center);
     ui.allocate_ui_with_layout(vec2(width, 24.0), layout, |ui| stage(ui, cx));
     ui.add_space((ui.available_width() - at_right).max(0.0));
-    device(ui, cx);
+    command_switch(ui, cx, DEVICE, &devices);
     ui.add_space(gap);
     pause(ui, cx);
     add_command(ui, cx, Command::Save, Button::new("Save…").min_size(vec2(SAVE, 0.0)));
@@ -117,12 +118,12 @@ fn step(ui: &mut Ui, cx: &PanelContext, command: Command, sign: &str) {
     named(&add_command(ui, cx, command, button), &command.name());
 }
 
-fn device(ui: &mut Ui, cx: &PanelContext) {
+/// The devices to choose from.
+fn devices(cx: &PanelContext) -> Vec<(&'static str, Command)> {
     let chosen = cx.model.remembered.device;
-    let devices =
-        [Device::Cpu, Device::Gpu].into_iter().filter(|device| device.is_shown() || *device == chosen);
-    let devices: Vec<_> = devices.map(|device| (device.label(), Command::Device(device))).collect();
-    command_switch(ui, cx, DEVICE, &devices);
+    let devices = [Device::Cpu, Device::Gpu].into_iter();
+    let devices = devices.filter(|device| device.is_shown() || *device == chosen);
+    devices.map(|device| (device.label(), Command::Device(device))).collect()
 }
 
 fn pause(ui: &mut Ui, cx: &PanelContext) {

@@ -49,7 +49,7 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext, numbers: Option<impl FnOnce(&mut Ui)>)
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(words));
         });
     });
-    bottom("present texts", 16.0 * unit, margin).show(ui, |ui| {
+    bottom("present texts", 19.0 * unit, margin).show(ui, |ui| {
         // Whatever stands there, the picture keeps its room.
         let room = ui.available_rect_before_wrap();
         ui.allocate_rect(room, Sense::hover());
