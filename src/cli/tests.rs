@@ -71,7 +71,7 @@ fn frames_default_to_one_turn() {
         let Ok(Request::Frames(options)) = request(&format!("--batch --device cpu {flags}")) else {
             panic!("no frames: {flags}")
         };
-        assert_eq!((options.frames, options.recipe.samples_per_pixel), (frames, samples), "{flags}");
+        assert_eq!((options.frames, options.picture.recipe.samples_per_pixel), (frames, samples), "{flags}");
     }
 }
 

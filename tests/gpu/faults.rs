@@ -3,7 +3,6 @@
 use crate::common::gpu::{cpu, go_on, gpu, job_of};
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
-use std::time::Duration;
 use weekender::backends::{self, BackendChoice};
 use weekender::film::Film;
 use weekender::job::render::{
