@@ -189,7 +189,7 @@ table! {
         off(no_presentation), on(|f| f.model.remembered.has_controls), also("left panel camera lens");
     Info "Stage and pixel", "Shows or hides the text and the numbers at the right", key(Key::I),
         off(no_presentation), on(|f| f.model.remembered.has_info), also("right panel text");
-    ErrorDock "Error", "Opens the dock with the error over time", key(Key::P), off(no_presentation),
+    ErrorDock "Error over time", "Opens the dock with the error over time", key(Key::P), off(no_presentation),
         on(|f| f.model.remembered.dock == Some(Dock::Error)), also("plot convergence noise quality");
     Panels "Only the picture", "Hides all panels; again shows them", key(Key::Tab),
         on(|f| !f.model.remembered.has_panels), also("hide panels");

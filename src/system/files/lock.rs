@@ -1,12 +1,11 @@
 //! Locks between programs. The system releases them however a program ends.
 
 use super::paths::{ShownPath, identity, resolved};
-use super::replace::patiently;
 use same_file::Handle;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// The hidden file with this ending beside `path`. Its name follows from that of `path`, so the next run that writes
 /// `path` takes over what a killed one left.
@@ -17,6 +16,28 @@ pub(super) fn hidden(path: &Path, ending: &str) -> io::Result<PathBuf> {
     let rest = name.chars().count().saturating_sub(50);
     let name: String = name.chars().skip(rest).collect();
     Ok(path.with_file_name(format!(".weekender-{name}{ending}")))
+}
+
+/// Time between two tries.
+const PAUSE: Duration = Duration::from_millis(5);
+
+/// Whether the file is locked or, on Windows, a program has opened it without sharing it, or it is about to be deleted.
+pub(super) fn is_busy(error: &io::Error) -> bool {
+    const SHARING_VIOLATION: i32 = 32;
+    let is_of_windows =
+        error.kind() == ErrorKind::PermissionDenied || error.raw_os_error() == Some(SHARING_VIOLATION);
+    error.kind() == ErrorKind::WouldBlock || cfg!(windows) && is_of_windows
+}
+
+/// Tries until the file is no longer busy, or for as long as `patience`.
+pub(super) fn patiently<T>(patience: Duration, mut attempt: impl FnMut() -> io::Result<T>) -> io::Result<T> {
+    let begin = Instant::now();
+    loop {
+        match attempt() {
+            Err(error) if is_busy(&error) && begin.elapsed() < patience => std::thread::sleep(PAUSE),
+            outcome => return outcome,
+        }
+    }
 }
 
 /// Another run is writing the file.

@@ -1,16 +1,13 @@
 //! Output files written whole or not at all: first beside their destination, then renamed.
 
-use super::lock::{FileLock, hidden, lock_path};
+use super::lock::{FileLock, hidden, is_busy, lock_path, patiently};
 use super::paths::{STANDARD, ShownPath, resolved, unnamed};
 use super::sync::sync_directory;
 use std::fs::{self, File, Metadata, OpenOptions, Permissions};
 use std::io::{self, BufWriter, ErrorKind, Seek, Write};
 use std::path::{Component, Path, PathBuf, Prefix};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use tempfile::{NamedTempFile, TempPath};
-
-/// Pause between attempts.
-const PAUSE: Duration = Duration::from_millis(5);
 
 /// Whether files have permissions. Those in the memory of a page have none, which reads as read-only.
 const HAVE_PERMISSIONS: bool = !cfg!(target_family = "wasm");
@@ -158,25 +155,6 @@ fn refusal_of_windows(path: &Path) -> Option<&'static str> {
 fn is_device(path: &Path) -> bool {
     let whole = std::path::absolute(path).unwrap_or_default();
     matches!(whole.components().next(), Some(Component::Prefix(prefix)) if matches!(prefix.kind(), Prefix::DeviceNS(_)))
-}
-
-/// Whether the file is locked or, on Windows, a program has opened it without sharing it, or it is about to be deleted.
-fn is_busy(error: &io::Error) -> bool {
-    const SHARING_VIOLATION: i32 = 32;
-    let is_of_windows =
-        error.kind() == ErrorKind::PermissionDenied || error.raw_os_error() == Some(SHARING_VIOLATION);
-    error.kind() == ErrorKind::WouldBlock || cfg!(windows) && is_of_windows
-}
-
-/// Tries until the file is no longer busy, or for as long as `patience`.
-pub(super) fn patiently<T>(patience: Duration, mut attempt: impl FnMut() -> io::Result<T>) -> io::Result<T> {
-    let begin = Instant::now();
-    loop {
-        match attempt() {
-            Err(error) if is_busy(&error) && begin.elapsed() < patience => std::thread::sleep(PAUSE),
-            outcome => return outcome,
-        }
-    }
 }
 
 /// Waits for another program to close the file that is to be replaced. Some programs briefly open each new file.

@@ -134,7 +134,9 @@ fn in_its_place(error: &toml::de::Error) -> Option<String> {
         .iter()
         .find_map(|(keys, place)| keys.contains(key).then_some(*place))?,
     };
-    Some(format!("unknown key {key} here; write it {place}"))
+    let text = error.to_string();
+    let here = text.trim_end().rsplit_once('\n').map_or("here", |(_, here)| here);
+    Some(format!("unknown key {key} {here}; write it {place}"))
 }
 
 #[derive(Deserialize)]
