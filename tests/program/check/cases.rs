@@ -41,8 +41,6 @@ fn pictures_of_learners_are_understood() {
         ("off-centre-viewport.png", Some("lambertian-gamma"), "corner-without-aspect", true),
         ("red-sphere-int-viewport.png", None, "integer-width", true),
         ("red-sphere-off-centre.png", None, "corner-without-aspect", false),
-        ("nan-refract.png", Some("hollow-glass"), "refract-nan", false),
-        ("two-balls-of-edition-3.png", None, "ball-missing", false),
         ("edition3-and-255.png", None, "edition-scene", true),
         ("edition3-no-gamma.png", None, "no-gamma", true),
         ("center-ball-z-is-minus-1.png", None, "the z of the middle ball is -1,", true),
