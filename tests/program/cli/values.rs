@@ -43,7 +43,7 @@ fn messages_are_short_however_long_the_input() {
     let camera = "[camera]\nlook_from = [0.0, 0.0, 3.0]\nlook_at = [0.0, 0.0, 0.0]\nvfov_degrees = 40.0\n";
     let table = |row: &str| format!("spheres = '''\nx,y,z,radius,red,green,blue\n{row}\n'''\n{camera}");
     write("cell.toml", &table(&format!("0,0,{long},1,0,0,0")));
-    write("header.toml", &table("").replace("x,y,z", &format!("x,{long}\u{1b},z")));
+    write("header.toml", &table("").replace("x,y,z", &format!("x,{long},z")));
     write("key.toml", &format!("{camera}{long} = 3\n"));
     write("kind.toml", &format!("{camera}[materials.a]\nkind = \"{long}\"\n"));
     write("scene.toml", &format!("scene = \"{long}\"\n{camera}"));
