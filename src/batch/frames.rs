@@ -51,7 +51,7 @@ impl FramesOptions {
         let mut turns = (frames.start..frames.end - 1).filter(turns_over);
         let first = turns.next().filter(|_| matches!(path, CameraPath::Keyframes(_)));
         Ok(first.map(|first| {
-            let last = turns.last().unwrap_or(first) + 1;
+            let last = turns.next_back().unwrap_or(first) + 1;
             format!(
                 "the picture turns over between the frames {first} and {last}: the camera passes over or under its \
                  look_at, where vup no longer tells which way is up; give the keyframes around them a vup of their own"
