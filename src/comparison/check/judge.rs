@@ -7,7 +7,7 @@ use super::hypothesis::{Added, Hypothesis, Mistake, Rendered, Studio};
 use super::mask::{enlarged, grown};
 use super::mistakes::applying_to;
 use super::noise::{altered, is_shared};
-use super::numbers::{Solver, Start, finished};
+use super::numbers::{Start, finished};
 use super::random::{common, complete, fixed};
 use super::screen::{Screen, small};
 use super::written::{Seen, Written, reduced};
@@ -268,19 +268,18 @@ impl Search<'_> {
             };
             let mut order: Vec<_> = bases.iter().zip(screens).collect();
             order.sort_by(|a, b| key(a).total_cmp(&key(b)));
-            for (base, (_, screen)) in order.into_iter().take(NUMBERED) {
-                let mut solver = Solver { screen };
-                let mut start = solver.start(&mut self.studio)?;
-                self.numbers(base, &mut start, &mut solver, &mut compared)?;
-                searches.push((base, start, solver));
+            for (base, (_, mut screen)) in order.into_iter().take(NUMBERED) {
+                let mut start = screen.start(&mut self.studio)?;
+                self.numbers(base, &mut start, &mut screen, &mut compared)?;
+                searches.push((base, start, screen));
             }
             if let Some(finding) = self.explained(&right, enough(&compared)) {
                 return Ok(finding);
             }
         }
         for _ in 1..NUMBERS {
-            for (base, best, solver) in searches.iter_mut().take(NUMBERED) {
-                self.numbers(base, best, solver, &mut compared)?;
+            for (base, best, screen) in searches.iter_mut().take(NUMBERED) {
+                self.numbers(base, best, screen, &mut compared)?;
             }
             if let Some(finding) = self.explained(&right, enough(&compared)) {
                 return Ok(finding);
@@ -382,13 +381,13 @@ impl Search<'_> {
         &mut self,
         base: &Hypothesis,
         best: &mut Start,
-        solver: &mut Solver,
+        screen: &mut Screen,
         compared: &mut Vec<Compared>,
     ) -> Result<()> {
         let stage = base.stage;
         (self.say)(format!("trying the numbers of {} {}", stage.section, stage.title));
         let seen = self.seen(&base.written, None);
-        let more = solver.one_more(&mut self.studio, best)?;
+        let more = screen.one_more(&mut self.studio, best)?;
         for start in &more {
             compared.push(self.with_numbers(&seen, base, start)?);
         }
@@ -561,7 +560,7 @@ impl Search<'_> {
         ranked.sort_by(|(a, it), (b, other)| bin(a).cmp(&bin(b)).then(key(it).cmp(&key(other))));
         // All have the same random numbers, so that pictures are equal if their misfits are.
         let mut known = HashSet::new();
-        ranked.retain(|(misfit, _)| known.insert(misfit.to_bits()));
+        ranked.retain(|(misfit, _)| misfit.is_infinite() || known.insert(misfit.to_bits()));
         Ok(ranked)
     }
 }

@@ -357,27 +357,23 @@ const TRIED: [f64; 6] = [-1.0, -0.5, -0.2, 0.2, 0.5, 1.0];
 const SAMPLES: u64 = 32;
 
 /// The search for numbers on a small picture.
-pub struct Solver {
-    pub screen: Screen,
-}
-
-impl Solver {
+impl Screen {
     /// Where the search begins.
     pub fn start(&mut self, studio: &mut Studio) -> Result<Start> {
-        let at = self.screen.base.clone();
+        let at = self.base.clone();
         Ok(Start { rest: self.quality(studio, &at, true)?, at, whats: Vec::new() })
     }
 
     fn quality(&mut self, studio: &mut Studio, of: &Hypothesis, is_far: bool) -> Result<f64> {
-        let rest = self.screen.rest(studio, of, SAMPLES, None)?;
-        Ok(square(&rest, &self.screen.weights(is_far)))
+        let rest = self.rest(studio, of, SAMPLES, None)?;
+        Ok(square(&rest, &self.weights(is_far)))
     }
 
     fn derivatives(&mut self, studio: &mut Studio, start: &Start) -> Result<Vec<Vec<f64>>> {
         let mut all = Vec::new();
         for ([below, above], distance) in start.sides() {
-            let below = self.screen.rest(studio, &below, SAMPLES, None)?;
-            let above = self.screen.rest(studio, &above, SAMPLES, None)?;
+            let below = self.rest(studio, &below, SAMPLES, None)?;
+            let above = self.rest(studio, &above, SAMPLES, None)?;
             all.push(below.iter().zip(&above).map(|(below, above)| (below - above) / distance).collect());
         }
         Ok(all)
@@ -389,8 +385,8 @@ impl Solver {
         const MOST: f64 = 0.7;
         const SOLVED: usize = 8;
         const KEPT: usize = 3;
-        let weights = self.screen.weights(true);
-        let rest = self.screen.rest(studio, &start.at, SAMPLES, None)?;
+        let weights = self.weights(true);
+        let rest = self.rest(studio, &start.at, SAMPLES, None)?;
         let known = self.derivatives(studio, start)?;
         let mut tried = Vec::new();
         for what in What::all(&start.at).into_iter().filter(|what| !start.whats.contains(what)) {
@@ -423,11 +419,11 @@ impl Solver {
     /// Gauss-Newton: first with equal weights, as far away the noise says little, then with those of the noise.
     fn solved(&mut self, studio: &mut Studio, mut start: Start) -> Result<Start> {
         const STEPS: usize = 6;
-        let reaches: Vec<Reach> = start.whats.iter().map(|what| what.reach(&self.screen.base)).collect();
-        let home: Vec<f64> = start.whats.iter().map(|what| what.of(&self.screen.base)).collect();
+        let reaches: Vec<Reach> = start.whats.iter().map(|what| what.reach(&self.base)).collect();
+        let home: Vec<f64> = start.whats.iter().map(|what| what.of(&self.base)).collect();
         for is_far in [true, false] {
-            let weights = self.screen.weights(is_far);
-            let mut rest = self.screen.rest(studio, &start.at, SAMPLES, None)?;
+            let weights = self.weights(is_far);
+            let mut rest = self.rest(studio, &start.at, SAMPLES, None)?;
             for _ in 0..STEPS {
                 let derivatives = self.derivatives(studio, &start)?;
                 let derivatives: Vec<&[f64]> = derivatives.iter().map(Vec::as_slice).collect();
@@ -443,7 +439,7 @@ impl Solver {
                         })
                         .collect();
                     let at = start.with(&next);
-                    let there = self.screen.rest(studio, &at, SAMPLES, None)?;
+                    let there = self.rest(studio, &at, SAMPLES, None)?;
                     if square(&there, &weights) < 0.999 * before {
                         is_moved = (0..by.len()).any(|i| (next[i] - here[i]).abs() > reaches[i].step / 20.0);
                         (rest, start.at) = (there, at);

@@ -138,7 +138,6 @@ impl Book {
         }
     }
 
-    #[allow(dead_code, reason = "the table of checks uses it")]
     /// The same section in edition 3: another camera, other balls, and fuzz from inside the unit sphere.
     pub fn of_edition_3(stage: &'static str, mistake: &'static str) -> Book {
         let mut book = Book { is_edition_3: true, ..Book::new(stage, mistake) };

@@ -12,8 +12,12 @@ use weekender::comparison::check::{Finding, Mine, judge};
 use weekender::stages::Stage;
 
 fn mine(stage: &'static str, mistake: &'static str, samples: u32, seed: u64) -> Mine {
+    made_by(&Book::new(stage, mistake), samples, seed)
+}
+
+fn made_by(program: &Book, samples: u32, seed: u64) -> Mine {
     let (width, height) = (160, 90);
-    let bytes = Book::new(stage, mistake).render(width, height, samples, seed);
+    let bytes = program.render(width, height, samples, seed);
     Mine::of_bytes(bytes, [width, height])
 }
 
@@ -51,16 +55,19 @@ fn planted_mistakes_are_named() {
         ("lambertian-gamma", "point-in-sphere"),
         ("metal-fuzzy", "fuzz-missing"),
         ("hollow-glass", "index-inverted"),
-        ("hollow-glass", "last-hit-wins"),
         ("hollow-glass", "vfov-radians"),
         ("defocus", "focus-distance-one"),
         ("lambertian-gamma", "wraps-to-0"),
         ("lambertian-gamma", "same-seed"),
-    ];
+    ]
+    .map(|(stage, mistake)| (stage, mistake, Book::new(stage, mistake)));
+    let (stage, mistake) = ("hollow-glass", "last-hit-wins");
+    let in_edition_3 = (stage, mistake, Book::of_edition_3(stage, mistake));
     let wrong: Vec<String> = planted
         .into_iter()
-        .filter_map(|(stage, mistake)| {
-            let mine = mine(stage, mistake, 60, 3);
+        .chain([in_edition_3])
+        .filter_map(|(stage, mistake, program)| {
+            let mine = made_by(&program, 60, 3);
             let finding =
                 judge(&mine, Some(Stage::find(stage).unwrap()), &AtomicBool::new(false), |_| {}).unwrap();
             let named = ids(&finding);
