@@ -78,7 +78,7 @@ fn a_long_render_is_there_again_when_one_comes_back() {
 
 /// Here a pass takes a second, whose end the next picture waits for.
 #[test]
-fn a_long_render_that_is_left_while_it_traces_keeps_its_samples() {
+fn a_long_render_left_while_it_traces_keeps_its_samples() {
     let mut harness =
         open("--stage metal --size 800x450 --samples 4000000000 --device reference --threads 1");
     until(&mut harness, "samples", has_samples(2));

@@ -61,8 +61,8 @@ impl Screen {
         .collect()
     }
 
-    /// What is left of the reader's picture, 0 where it is not known, by a picture with so many samples per pixel; `half` is
-    /// one of its halves, with independent noise.
+    /// What a picture with `samples` per pixel leaves of the reader's, 0 where that is not known; `half` is one of its
+    /// halves, with independent noise.
     pub fn rest(
         &mut self,
         studio: &mut Studio,
