@@ -35,12 +35,12 @@ web info web.exr > answer 2>&1
 case_of 'info' grep -q '16 per pixel' answer
 web compare host.exr web.exr > answer 2>&1
 case_of 'compare' grep -q 'equal to the bit' answer
-for picture in "$here"/../check/cases/*; do
+for picture in "$here"/../program/check/cases/*.*; do
     name=$(basename "$picture")
     cp "$picture" .
-    "$host" check "$name" > host.out 2>&1
+    "$host" check --progress off "$name" > host.out 2>&1
     codes=$?
-    web check "$name" > web.out 2>&1
+    web check --progress off "$name" > web.out 2>&1
     codes+=" $?"
     # The figures differ by rounding.
     for who in host web; do grep -v '^seen' $who.out > $who.txt; done

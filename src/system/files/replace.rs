@@ -194,12 +194,15 @@ fn new_file_for(path: &Path, old: Option<Permissions>) -> io::Result<NamedTempFi
     if fs::symlink_metadata(&part).is_ok_and(|found| !found.is_file()) {
         return Err(io::Error::new(ErrorKind::AlreadyExists, format!("{} is in the way", part.shown())));
     }
-    let file = once_closed(|| lock_path(&part, Duration::ZERO)).or_else(|error| match error.kind() {
+    let emptied = || {
+        let file = lock_path(&part, Duration::ZERO)?;
+        file.set_len(0).map(|()| file)
+    };
+    let file = once_closed(emptied).or_else(|error| match error.kind() {
         ErrorKind::ResourceBusy => Err(error),
         // Where the file system has no locks, runs are not kept apart.
         _ => File::create(&part),
     })?;
-    file.set_len(0)?;
     let file = NamedTempFile::from_parts(file, TempPath::try_from_path(part)?);
     if let Some(old) = old.filter(|_| HAVE_PERMISSIONS) {
         file.as_file().set_permissions(old)?;
