@@ -261,10 +261,8 @@ impl Finding {
         let found = self.found.iter();
         evidence.extend(found.clone().filter_map(|found| found.hypothesis.note.as_deref()).map(capitalised));
         for number in found.clone().flat_map(|found| &found.hypothesis.numbers) {
-            evidence.push(format!(
-                "The number is {:.3}, with a deviation of {:.3}",
-                number.value, number.deviation
-            ));
+            let deviation = number.deviation.max(0.001);
+            evidence.push(format!("The number is {:.3}, with a deviation of {deviation:.3}", number.value));
         }
         for cause in self.alike.iter().filter_map(Hypothesis::cause) {
             evidence.push(format!("Or {}: {}", cause.title, cause.remedy));

@@ -2,12 +2,12 @@
 //! number explains it.
 
 use super::Mine;
-use super::fit::{Compared, Fit, SCORE_LIMIT};
+use super::fit::{Compared, Fit};
 use super::hypothesis::{Added, Hypothesis, Mistake, Rendered, Studio};
 use super::mask::{enlarged, grown};
 use super::mistakes::applying_to;
 use super::noise::{altered, is_shared};
-use super::numbers::{Start, finished};
+use super::numbers::Start;
 use super::random::{common, complete, fixed};
 use super::screen::{Screen, small};
 use super::written::{Seen, Written, reduced};
@@ -56,8 +56,10 @@ const NEAR: f64 = 0.02;
 /// The most that a value counts, in squared displayed values.
 const ROUGH_MOST: f64 = 0.01;
 
-/// Mean square of the blocks' means, in bytes, above which the levels of bytes do not matter, and nothing is explained.
+/// Mean square of the blocks' means, in bytes, above which nothing is explained; and above which no other levels of bytes
+/// explain it, as they differ by a byte at most.
 const FAR: f64 = 100.0;
+const LEVELS: f64 = 2.0;
 
 /// Share of differing blocks from which on a picture may be one of the random scene.
 const RANDOM_LEAST: f64 = 0.5;
@@ -321,9 +323,12 @@ impl Search<'_> {
             let nothing = screen.excess(&mut self.studio, base, SCREENED[1])?.max(0.0);
             for mistake in applying_to(&base.recipe).filter(|it| !it.is_right && it.id != SHARED) {
                 for hypothesis in mistake.pictures(base) {
-                    let needs_all = hypothesis.added.is_some() || hypothesis.written.blackens;
-                    if needs_all || hypothesis.is_fine {
-                        if is_nearest && (needs_all || rank == 0 && right.fit.excess < FINE_MOST) {
+                    if hypothesis.added.is_some() || hypothesis.written.blackens || hypothesis.is_fine {
+                        let is_possible = match hypothesis.is_fine {
+                            true => rank == 0 && right.fit.excess < FINE_MOST,
+                            false => !hypothesis.written.blackens || self.mine.has_zeros(),
+                        };
+                        if is_nearest && is_possible {
                             whole.push(hypothesis);
                         }
                     } else if !hypothesis.is_traced_as(base) && !hypothesis.written.order.exchanges_sides() {
@@ -356,24 +361,28 @@ impl Search<'_> {
         near.retain(|(excess, _)| *excess < limit);
         near.dedup_by(|(a, _), (b, _)| a == b);
         near.truncate(COMPARED[2]);
-        let mut found = Vec::new();
-        for hypothesis in near.into_iter().map(|(_, hypothesis)| hypothesis).chain(whole) {
-            let named = hypothesis.named().map_or("a mistake", |named| named.title);
-            (self.say)(format!("comparing: {named}"));
-            found.push(self.compared_by(&hypothesis, true)?);
+        let (mut found, mut limit) = (Vec::new(), f64::INFINITY);
+        for (excess, hypothesis) in near {
+            if excess < limit {
+                let tried = self.tried(&hypothesis)?;
+                if tried.fit.is_enough() {
+                    // Pictures that differ from an equal one are not equal.
+                    limit = excess.max(0.0) + FINE_MOST;
+                }
+                found.push(tried);
+            }
         }
-        self.refined(&mut found)?;
+        for hypothesis in whole.iter().filter(|_| limit.is_infinite()) {
+            found.push(self.tried(hypothesis)?);
+        }
         compared.append(&mut found);
         Ok(screens)
     }
 
-    /// Looks closer at those that fit best.
-    fn refined(&mut self, compared: &mut [Compared]) -> Result<()> {
-        let least = compared.iter().map(|it| it.fit.score).fold(f64::INFINITY, f64::min);
-        for it in compared.iter_mut().filter(|it| it.fit.score < FAR_OFF.min(3.0 * least.max(SCORE_LIMIT))) {
-            *it = self.compared_by(&it.hypothesis, false)?;
-        }
-        Ok(())
+    fn tried(&mut self, hypothesis: &Hypothesis) -> Result<Compared> {
+        let named = hypothesis.named().map_or("a mistake", |named| named.title);
+        (self.say)(format!("comparing: {named}"));
+        self.compared(hypothesis)
     }
 
     /// Tries one number more than `best` has.
@@ -398,15 +407,24 @@ impl Search<'_> {
     }
 
     fn with_numbers(&mut self, seen: &Seen, base: &Hypothesis, start: &Start) -> Result<Compared> {
+        /// Steps in full size.
+        const STEPS: usize = 4;
         let words = start.whats.iter().map(|what| what.words(what.of(&start.at), base)).collect::<Vec<_>>();
         (self.say)(format!("comparing: {}", words.join(", ")));
-        let here = self.compared_by(&start.at, true)?;
-        if here.fit.score > HOPELESS {
-            return Ok(Compared { hypothesis: start.named(base, None), ..here });
+        let (mut start, mut known) = (start.clone(), None);
+        for _ in 0..STEPS {
+            let here = self.compared_by(&start.at, true)?;
+            if here.fit.score > HOPELESS {
+                return Ok(Compared { hypothesis: start.named(base, None), ..here });
+            }
+            let mut render = |of: &Hypothesis| self.studio.render(&of.fast(), 1, QUICK[0], None);
+            let Some((deviations, is_long)) = start.step(base, seen, &here, &mut render)? else { break };
+            known = Some(deviations);
+            if !is_long {
+                break;
+            }
         }
-        let mut render = |of: &Hypothesis| self.studio.render(&of.fast(), 1, QUICK[0], None);
-        let finished = finished(start, base, seen, &here, &mut render)?;
-        self.compared(&finished)
+        self.compared(&start.named(base, known.as_deref()))
     }
 
     /// The reader's picture, written in this way; `expected` tells which zeros are whites that wrapped around.
@@ -434,7 +452,7 @@ impl Search<'_> {
             (rendered, hypothesis.note) = with_added(&seen, &hypothesis.written, rendered, added);
         }
         let mut best = Compared { fit: fit(&hypothesis, &rendered), hypothesis, rendered };
-        if best.fit.excess > FAR || best.hypothesis.written.wraps {
+        if best.fit.excess > LEVELS || best.hypothesis.written.wraps {
             return Ok(best);
         }
         // As in the book's first sections.
@@ -498,7 +516,7 @@ impl Search<'_> {
         let size = [self.mine.width, self.mine.height];
         let factor = factor(size, SMALL_WIDTH);
         let mut known: Vec<(Written, Vec<[f64; 3]>)> = Vec::new();
-        let mut ranked = Vec::new();
+        let (mut ranked, has_zeros) = (Vec::new(), self.mine.has_zeros());
         for stage in stages {
             let right = Hypothesis::right(stage, common(stage), size);
             let editions =
@@ -514,7 +532,8 @@ impl Search<'_> {
                         && it.added.is_none()
                         && (it.is_traced_as(&base) || it.written.order.exchanges_sides())
                 };
-                let others: Vec<Hypothesis> = others.filter(is_other).collect();
+                let others: Vec<Hypothesis> =
+                    others.filter(is_other).filter(|it| has_zeros || !it.written.wraps).collect();
                 let rendered = tiny(&base)?;
                 let exchanged = match others.iter().find(|it| it.written.order.exchanges_sides()) {
                     Some(other) if size[0] != size[1] && base.rows.is_empty() => Some(tiny(other)?),
@@ -664,8 +683,12 @@ pub fn with_added(
             }
         }
         let least = if added == Added::Gain { -0.99 } else { 0.0 };
+        let before = times;
         times = (times + product / square).max(least);
         at = rendered.plus(times, from);
+        if (times - before).abs() < 1e-4 {
+            break;
+        }
     }
     let note = match added {
         Added::Gain => {

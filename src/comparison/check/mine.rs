@@ -179,6 +179,11 @@ impl Mine {
         }
     }
 
+    /// Whether more than single values are 0.
+    pub fn has_zeros(&self) -> bool {
+        self.bytes.as_flattened().iter().filter(|byte| **byte == 0).nth(5).is_some()
+    }
+
     /// Bytes in a step of the file's values, at least 1.
     pub fn step(&self) -> f64 {
         (256.0 / (f64::from(self.most) + 1.0)).max(1.0)

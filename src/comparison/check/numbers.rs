@@ -265,21 +265,29 @@ struct Step {
 }
 
 impl Step {
-    /// The step along these derivatives, of at most four numbers, that leaves least of `rest`.
-    fn new(derivatives: &[&[f64]], rest: &[f64], weights: &[f64]) -> Option<Step> {
+    /// The step along these derivatives, of at most four numbers, that leaves least of `rest`. Two pictures with independent
+    /// noise tell each derivative, so that its noise does not count as steepness, and the step is not too short.
+    fn new(derivatives: &[[Vec<f64>; 2]], rest: &[f64], weights: &[f64]) -> Option<Step> {
+        /// The least part of a derivative's square that counts as steepness.
+        const LEAST: f64 = 0.1;
         let dot = |a: &[f64], b: &[f64]| {
             let products = a.iter().zip(b).zip(weights).map(|((a, b), weight)| weight * a * b);
             products.filter(|x| x.is_finite()).sum::<f64>()
         };
-        let scales: Vec<f64> = derivatives.iter().map(|a| dot(a, a).max(1e-300).sqrt()).collect();
+        let both = |[a, b]: &[Vec<f64>; 2], [c, d]: &[Vec<f64>; 2]| f64::midpoint(dot(a, d), dot(b, c));
+        let scale = |it: &[Vec<f64>; 2]| {
+            let whole = f64::midpoint(dot(&it[0], &it[0]), dot(&it[1], &it[1]));
+            both(it, it).max(LEAST * whole).max(1e-300).sqrt()
+        };
+        let scales: Vec<f64> = derivatives.iter().map(scale).collect();
         let (mut matrix, mut right) = (DMat4::IDENTITY, DVec4::ZERO);
         for (i, a) in derivatives.iter().enumerate() {
             for (j, b) in derivatives.iter().enumerate().filter(|(j, _)| *j != i) {
-                matrix.col_mut(i)[j] = dot(a, b) / (scales[i] * scales[j]);
+                matrix.col_mut(i)[j] = both(a, b) / (scales[i] * scales[j]);
             }
             // A number that changes nothing stays.
             matrix.col_mut(i)[i] = 1.0 + 1e-6;
-            right[i] = dot(a, rest) / scales[i];
+            right[i] = f64::midpoint(dot(&a[0], rest), dot(&a[1], rest)) / scales[i];
         }
         let inverse = matrix.inverse();
         let found = inverse * right;
@@ -326,8 +334,7 @@ impl Start {
     pub fn named(&self, base: &Hypothesis, deviations: Option<&[f64]>) -> Hypothesis {
         let mut named = self.at.clone();
         for (index, what) in self.whats.iter().enumerate() {
-            // Channels share their noise.
-            let known = deviations.map(|all| 3.0_f64.sqrt() * all[index]);
+            let known = deviations.map(|all| all[index]);
             named.numbers.push(what.number(
                 what.of(&self.at),
                 known.unwrap_or_else(|| what.reach(base).step),
@@ -354,7 +361,7 @@ impl Start {
 const TRIED: [f64; 6] = [-1.0, -0.5, -0.2, 0.2, 0.5, 1.0];
 
 /// Samples per pixel of the small pictures.
-const SAMPLES: u64 = 32;
+const SAMPLES: u64 = 16;
 
 /// The search for numbers on a small picture.
 impl Screen {
@@ -365,16 +372,20 @@ impl Screen {
     }
 
     fn quality(&mut self, studio: &mut Studio, of: &Hypothesis, is_far: bool) -> Result<f64> {
-        let rest = self.rest(studio, of, SAMPLES, None)?;
+        let rest = self.rest(studio, of, SAMPLES)?;
         Ok(square(&rest, &self.weights(is_far)))
     }
 
-    fn derivatives(&mut self, studio: &mut Studio, start: &Start) -> Result<Vec<Vec<f64>>> {
+    fn derivatives(&mut self, studio: &mut Studio, start: &Start) -> Result<Vec<[Vec<f64>; 2]>> {
         let mut all = Vec::new();
         for ([below, above], distance) in start.sides() {
-            let below = self.rest(studio, &below, SAMPLES, None)?;
-            let above = self.rest(studio, &above, SAMPLES, None)?;
-            all.push(below.iter().zip(&above).map(|(below, above)| (below - above) / distance).collect());
+            let [below, above] =
+                [self.halves(studio, &below, SAMPLES)?, self.halves(studio, &above, SAMPLES)?];
+            let of = |half: usize| {
+                let pixels = below[half].iter().zip(&above[half]);
+                pixels.map(|(below, above)| (below - above) / distance).collect()
+            };
+            all.push([of(0), of(1)]);
         }
         Ok(all)
     }
@@ -386,12 +397,12 @@ impl Screen {
         const SOLVED: usize = 8;
         const KEPT: usize = 3;
         let weights = self.weights(true);
-        let rest = self.rest(studio, &start.at, SAMPLES, None)?;
+        let rest = self.rest(studio, &start.at, SAMPLES)?;
         let known = self.derivatives(studio, start)?;
         let mut tried = Vec::new();
         for what in What::all(&start.at).into_iter().filter(|what| !start.whats.contains(what)) {
             let own = self.derivatives(studio, &Start { whats: vec![what], ..start.clone() })?;
-            let all: Vec<&[f64]> = known.iter().chain(&own).map(Vec::as_slice).collect();
+            let all: Vec<_> = known.iter().chain(&own).cloned().collect();
             let gain = Step::new(&all, &rest, &weights).map_or(0.0, |step| step.gain);
             let mut best = (1.0 - gain, start.and(what));
             let alone = Start { whats: vec![what], ..start.clone() };
@@ -423,10 +434,9 @@ impl Screen {
         let home: Vec<f64> = start.whats.iter().map(|what| what.of(&self.base)).collect();
         for is_far in [true, false] {
             let weights = self.weights(is_far);
-            let mut rest = self.rest(studio, &start.at, SAMPLES, None)?;
+            let mut rest = self.rest(studio, &start.at, SAMPLES)?;
             for _ in 0..STEPS {
                 let derivatives = self.derivatives(studio, &start)?;
-                let derivatives: Vec<&[f64]> = derivatives.iter().map(Vec::as_slice).collect();
                 let Some(Step { by, .. }) = Step::new(&derivatives, &rest, &weights) else { break };
                 let (before, here) = (square(&rest, &weights), start.values());
                 let mut is_moved = false;
@@ -439,7 +449,7 @@ impl Screen {
                         })
                         .collect();
                     let at = start.with(&next);
-                    let there = self.rest(studio, &at, SAMPLES, None)?;
+                    let there = self.rest(studio, &at, SAMPLES)?;
                     if square(&there, &weights) < 0.999 * before {
                         is_moved = (0..by.len()).any(|i| (next[i] - here[i]).abs() > reaches[i].step / 20.0);
                         (rest, start.at) = (there, at);
@@ -460,34 +470,51 @@ fn square(rest: &[f64], weights: &[f64]) -> f64 {
     rest.iter().zip(weights).map(|(rest, weight)| weight * rest * rest).sum()
 }
 
-/// One step at the reader's size, where `here` is what the start leaves, with pictures of few samples that `render` makes.
-/// Returns the numbers with their deviations.
-pub fn finished(
-    start: &Start,
-    base: &Hypothesis,
-    seen: &Seen,
-    here: &Compared,
-    render: &mut dyn FnMut(&Hypothesis) -> Result<Rendered>,
-) -> Result<Hypothesis> {
-    let fit = &here.fit;
-    let mut derivatives = Vec::new();
-    for ([below, above], distance) in start.sides() {
-        let (below, above) = (render(&below)?.mean(), render(&above)?.mean());
-        let pixels = below.iter().zip(&above).zip(&fit.steps);
-        let derivative: Vec<[f64; 3]> = pixels
-            .map(|((below, above), step)| [0, 1, 2].map(|c| (above[c] - below[c]) / (distance * step[c])))
-            .collect();
-        derivatives.push(fit.in_blocks(seen, &derivative));
+impl Start {
+    /// One step at the reader's size, from `here`, with pictures of few samples that `render` makes. Returns the deviations of
+    /// the numbers, and whether the step was longer than these.
+    pub fn step(
+        &mut self,
+        base: &Hypothesis,
+        seen: &Seen,
+        here: &Compared,
+        render: &mut dyn FnMut(&Hypothesis) -> Result<Rendered>,
+    ) -> Result<Option<(Vec<f64>, bool)>> {
+        let fit = &here.fit;
+        // Above it, all are white.
+        let most = base.written.linear(255, 0, 1)[0];
+        let (mut derivatives, mut variance) = (Vec::new(), fit.variance.clone());
+        for ([below, above], distance) in self.sides() {
+            let (below, above) = (render(&below)?, render(&above)?);
+            // What one of them happens to lack has no noise there.
+            for ((variance, step), errors) in
+                variance.iter_mut().zip(&fit.steps).zip(below.error.iter().zip(&above.error))
+            {
+                (0..3).for_each(|c| variance[c] += f64::midpoint(errors.0[c], errors.1[c]) / step[c].powi(2));
+            }
+            let of = |half: usize| {
+                let pixels = below.halves[half].iter().zip(&above.halves[half]).zip(&fit.steps);
+                let derivative: Vec<[f64; 3]> = pixels
+                    .map(|((below, above), step)| {
+                        [0, 1, 2].map(|c| (above[c].min(most) - below[c].min(most)) / (distance * step[c]))
+                    })
+                    .collect();
+                fit.in_blocks(seen, &derivative)
+            };
+            derivatives.push([of(0), of(1)]);
+        }
+        let weights: Vec<f64> = fit.in_blocks(seen, &variance).into_iter().map(f64::recip).collect();
+        let Some(step) = Step::new(&derivatives, &fit.in_blocks(seen, &fit.left), &weights) else {
+            return Ok(None);
+        };
+        let values = self.whats.iter().zip(self.values()).zip(&step.by).map(|((what, value), by)| {
+            let most = what.reach(base).most / 5.0;
+            value + by.clamp(-most, most)
+        });
+        self.at = self.with(&values.collect::<Vec<_>>());
+        // Channels share their noise.
+        let deviations: Vec<f64> = step.deviations.iter().map(|one| 3.0_f64.sqrt() * one).collect();
+        let is_long = step.by.iter().zip(&deviations).any(|(by, one)| by.abs() > *one) && step.gain > 1e-3;
+        Ok(Some((deviations, is_long)))
     }
-    let derivatives: Vec<&[f64]> = derivatives.iter().map(Vec::as_slice).collect();
-    let weights: Vec<f64> = fit.in_blocks(seen, &fit.variance).into_iter().map(f64::recip).collect();
-    let Some(step) = Step::new(&derivatives, &fit.in_blocks(seen, &fit.left), &weights) else {
-        return Ok(start.named(base, None));
-    };
-    let values = start.whats.iter().zip(start.values()).zip(&step.by).map(|((what, value), by)| {
-        let most = what.reach(base).most / 5.0;
-        value + by.clamp(-most, most)
-    });
-    let there = Start { at: start.with(&values.collect::<Vec<_>>()), ..start.clone() };
-    Ok(there.named(base, Some(&step.deviations)))
 }

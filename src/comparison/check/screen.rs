@@ -61,15 +61,20 @@ impl Screen {
         .collect()
     }
 
-    /// What a picture with `samples` per pixel leaves of the reader's, 0 where that is not known; `half` is one of its
-    /// halves, with independent noise.
-    pub fn rest(
-        &mut self,
-        studio: &mut Studio,
-        of: &Hypothesis,
-        samples: u64,
-        half: Option<usize>,
-    ) -> Result<Vec<f64>> {
+    /// What a picture with `samples` per pixel leaves of the reader's, 0 where that is not known.
+    pub fn rest(&mut self, studio: &mut Studio, of: &Hypothesis, samples: u64) -> Result<Vec<f64>> {
+        let [here, there] = self.both(studio, of, samples)?;
+        Ok(self.left(&here.mean(), &there.mean()))
+    }
+
+    /// The same by each half of the picture, which have independent noise.
+    pub fn halves(&mut self, studio: &mut Studio, of: &Hypothesis, samples: u64) -> Result<[Vec<f64>; 2]> {
+        let [here, there] = self.both(studio, of, samples)?;
+        Ok([0, 1].map(|half| self.left(&here.halves[half], &there.halves[half])))
+    }
+
+    /// The base and a hypothesis, with the same random numbers.
+    fn both(&mut self, studio: &mut Studio, of: &Hypothesis, samples: u64) -> Result<[Rendered; 2]> {
         let is_plain =
             of.steps.is_some() && !(self.base.steps.is_some() && of.rows.len() == self.base.rows.len());
         let (mut base, mut own) = (self.base.clone(), of.clone());
@@ -79,23 +84,29 @@ impl Screen {
             (base.steps, own.steps) = (None, None);
         }
         let key = (is_plain, samples);
-        if !self.own.iter().any(|(known, _)| *known == key) {
-            self.own.push((key, small(studio, &base, self.factor, samples)?));
-        }
-        let there = small(studio, &own, self.factor, samples)?;
-        let picture = |of: &Rendered| half.map_or_else(|| of.mean(), |half| of.halves[half].clone());
-        let here = self.own.iter().find(|(known, _)| *known == key).map(|(_, here)| picture(here));
-        let (here, there) = (here.unwrap_or_default(), picture(&there));
+        let here = match self.own.iter().find(|(known, _)| *known == key) {
+            Some((_, here)) => here.clone(),
+            None => {
+                let here = small(studio, &base, self.factor, samples)?;
+                self.own.push((key, here.clone()));
+                here
+            }
+        };
+        Ok([here, small(studio, &own, self.factor, samples)?])
+    }
+
+    /// What the picture of a base leaves that changes from `here` to `there`.
+    fn left(&self, here: &[[f64; 3]], there: &[[f64; 3]]) -> Vec<f64> {
         let [values, mean, here, there] =
-            [&self.values, &self.mean, &here, &there].map(|pixels| pixels.as_flattened());
+            [&self.values[..], &self.mean, here, there].map(|pixels| pixels.as_flattened());
         let rest = |at: usize| values[at] - (mean[at] + there[at] - here[at]).clamp(0.0, self.most);
-        Ok((0..values.len()).map(rest).map(|x| if x.is_finite() { x } else { 0.0 }).collect())
+        (0..values.len()).map(rest).map(|x| if x.is_finite() { x } else { 0.0 }).collect()
     }
 
     /// The mean square of what is left beyond noise, in bytes.
     pub fn excess(&mut self, studio: &mut Studio, of: &Hypothesis, samples: u64) -> Result<f64> {
-        let [a, b] = [0, 1].map(|half| self.rest(studio, of, samples, Some(half)));
-        let (a, b, weights) = (a?, b?, self.weights(true));
+        let [a, b] = self.halves(studio, of, samples)?;
+        let weights = self.weights(true);
         let (mut sum, mut count) = (0.0, 1e-9);
         for (index, weight) in weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
             sum += 16.0 * weight * (a[index] * b[index] - self.noise.as_flattened()[index]);
