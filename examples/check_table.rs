@@ -183,14 +183,18 @@ fn planted(stage: &'static str, mistake: &'static str, is_third: bool, samples: 
     Mine::of_bytes(shown, SIZE)
 }
 
-/// The finding for a picture, and how many seconds it took. If two mistakes give the same picture, the planted one
-/// counts.
+/// The finding for a picture, and how many seconds it took: a sure number in its words, or the id of a mistake. If two
+/// mistakes give the same picture, the planted one counts.
 fn found(mine: &Mine, stage: Option<&str>, planted: &str) -> anyhow::Result<(String, f64)> {
     let begin = Instant::now();
     let finding = judge(mine, stage.map(Stage::find).transpose()?, &AtomicBool::new(false), |_| {})?;
     let seconds = begin.elapsed().as_secs_f64();
     if finding.alike.iter().filter_map(|alike| alike.named()).any(|alike| alike.id == planted) {
         return Ok((planted.to_owned(), seconds));
+    }
+    let explains = finding.found.as_ref().map_or(&[][..], |found| &found.hypothesis.numbers);
+    if let (Some(number), true) = (explains.first(), finding.is_sure) {
+        return Ok((format!("number: {}", number.words), seconds));
     }
     let found = match finding.named() {
         Some(mistake) if finding.is_sure => mistake.id.to_owned(),

@@ -17,12 +17,13 @@ use std::collections::HashSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Samples per pixel of a picture in full size, by the program's own tracer and by the plain one; and those of the first look
-/// at a picture.
-const FINE: [u64; 2] = [256, 64];
-const QUICK: [u64; 2] = [32, 16];
+/// Samples per pixel of a picture in full size, by the program's own tracer and by the plain one: in the first look, in the
+/// second, and in the third, at what the plain tracer renders and is nearly enough.
+const LOOKS: [[u64; 2]; 3] = [[32, 16], [256, 64], [256, 256]];
 
-/// After the first look, what scores more than this is far off, and what scores more than this no number brings near.
+/// After the second look, what scores more than this is not enough; after the first one, what scores more than this is far
+/// off, and what scores more than this no number brings near.
+const NOT_ENOUGH: f64 = 30.0;
 const FAR_OFF: f64 = 60.0;
 const HOPELESS: f64 = 500.0;
 
@@ -163,8 +164,8 @@ fn judge_random(
 struct Search<'a> {
     mine: &'a Mine,
     studio: Studio<'a>,
-    /// Right pictures in full size, and whether each is a first look.
-    known: Vec<(Hypothesis, bool, Rendered)>,
+    /// Right pictures in full size, each with its look.
+    known: Vec<(Hypothesis, usize, Rendered)>,
     say: &'a mut dyn FnMut(String),
 }
 
@@ -320,7 +321,7 @@ impl Search<'_> {
             (self.say)(format!("trying the mistakes of {} {}", stage.section, stage.title));
             let seen = self.seen(&base.written, None);
             let mut screen = Screen::new(&mut self.studio, base, &seen, factor, right.fit.samples)?;
-            let nothing = screen.excess(&mut self.studio, base, SCREENED[1])?.max(0.0);
+            let nothing = screen.excess(&mut self.studio, base, SCREENED[1])?[0].max(0.0);
             for mistake in applying_to(&base.recipe).filter(|it| !it.is_right && it.id != SHARED) {
                 for hypothesis in mistake.pictures(base) {
                     if hypothesis.added.is_some() || hypothesis.written.blackens || hypothesis.is_fine {
@@ -333,8 +334,8 @@ impl Search<'_> {
                         }
                     } else if !hypothesis.is_traced_as(base) && !hypothesis.written.order.exchanges_sides() {
                         let excess = screen.excess(&mut self.studio, &hypothesis, SCREENED[0])?;
-                        let is_alike = (excess - nothing).abs() < 0.1 * nothing.max(0.1);
-                        if !is_alike && excess < EXPLAINED * nothing + 2.0 * FINE_MOST {
+                        let is_alike = (excess[0] - nothing).abs() < 0.1 * nothing.max(0.1);
+                        if !is_alike && lowest(excess) < EXPLAINED * nothing + 2.0 * FINE_MOST {
                             screened.push((excess, rank, hypothesis));
                         }
                     }
@@ -342,16 +343,16 @@ impl Search<'_> {
             }
             screens.push((nothing, screen));
         }
-        screened.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
-        let least = screened.first().map_or(0.0, |(excess, ..)| excess.max(0.0));
-        screened.retain(|(excess, ..)| *excess < 3.0 * least + 4.0 * FINE_MOST);
+        screened.sort_by(|(a, ..), (b, ..)| a[0].total_cmp(&b[0]));
+        let least = screened.first().map_or(0.0, |(excess, ..)| excess[0].max(0.0));
+        screened.retain(|(excess, ..)| lowest(*excess) < 3.0 * least + 4.0 * FINE_MOST);
         screened.truncate(COMPARED[1]);
         let mut near = Vec::new();
         for (_, rank, hypothesis) in screened {
             let (nothing, screen) = &mut screens[rank];
             let excess = screen.excess(&mut self.studio, &hypothesis, SCREENED[1])?;
-            if excess < EXPLAINED * *nothing + FINE_MOST {
-                near.push((excess, hypothesis));
+            if lowest(excess) < EXPLAINED * *nothing + FINE_MOST {
+                near.push((lowest(excess), hypothesis));
             }
         }
         // Of those that are as near, what differs less from the book comes first.
@@ -413,11 +414,11 @@ impl Search<'_> {
         (self.say)(format!("comparing: {}", words.join(", ")));
         let (mut start, mut known) = (start.clone(), None);
         for _ in 0..STEPS {
-            let here = self.compared_by(&start.at, true)?;
+            let here = self.compared_by(&start.at, 0)?;
             if here.fit.score > HOPELESS {
                 return Ok(Compared { hypothesis: start.named(base, None), ..here });
             }
-            let mut render = |of: &Hypothesis| self.studio.render(&of.fast(), 1, QUICK[0], None);
+            let mut render = |of: &Hypothesis| self.studio.render(&of.fast(), 1, LOOKS[0][0], None);
             let Some((deviations, is_long)) = start.step(base, seen, &here, &mut render)? else { break };
             known = Some(deviations);
             if !is_long {
@@ -434,13 +435,17 @@ impl Search<'_> {
 
     /// A hypothesis in full size, with the levels of bytes that fit best.
     fn compared(&mut self, hypothesis: &Hypothesis) -> Result<Compared> {
-        let quick = self.compared_by(hypothesis, true)?;
-        if quick.fit.score > FAR_OFF { Ok(quick) } else { self.compared_by(&quick.hypothesis, false) }
+        let mut seen = self.compared_by(hypothesis, 0)?;
+        if seen.fit.score < FAR_OFF {
+            seen = self.compared_by(&seen.hypothesis, 1)?;
+        }
+        let is_nearly = !seen.fit.is_enough() && seen.fit.score < NOT_ENOUGH;
+        if is_nearly && hypothesis.steps.is_some() { self.compared_by(&seen.hypothesis, 2) } else { Ok(seen) }
     }
 
-    fn compared_by(&mut self, hypothesis: &Hypothesis, is_quick: bool) -> Result<Compared> {
+    fn compared_by(&mut self, hypothesis: &Hypothesis, look: usize) -> Result<Compared> {
         let mut hypothesis = hypothesis.clone();
-        let mut rendered = self.rendered(&hypothesis, is_quick)?;
+        let mut rendered = self.rendered(&hypothesis, look)?;
         let mean = hypothesis.written.wraps.then(|| rendered.mean());
         let fit = |hypothesis: &Hypothesis, rendered: &Rendered| {
             let mut seen = self.seen(&hypothesis.written, mean.as_deref());
@@ -449,7 +454,7 @@ impl Search<'_> {
         };
         if let Some(added) = hypothesis.added {
             let seen = self.seen(&hypothesis.written, None);
-            (rendered, hypothesis.note) = with_added(&seen, &hypothesis.written, rendered, added);
+            (rendered, hypothesis.note) = with_added(&seen, &rendered, added);
         }
         let mut best = Compared { fit: fit(&hypothesis, &rendered), hypothesis, rendered };
         if best.fit.excess > LEVELS || best.hypothesis.written.wraps {
@@ -473,16 +478,16 @@ impl Search<'_> {
         Ok(best)
     }
 
-    fn rendered(&mut self, of: &Hypothesis, is_quick: bool) -> Result<Rendered> {
-        let is_same = |(known, known_is_quick, _): &&(Hypothesis, bool, Rendered)| {
-            *known_is_quick == is_quick && known.stage.id == of.stage.id && known.is_traced_as(of)
+    fn rendered(&mut self, of: &Hypothesis, look: usize) -> Result<Rendered> {
+        let is_same = |(known, known_look, _): &&(Hypothesis, usize, Rendered)| {
+            *known_look == look && known.stage.id == of.stage.id && known.is_traced_as(of)
         };
         if let Some((.., rendered)) = self.known.iter().find(is_same) {
             return Ok(rendered.clone());
         }
-        let rendered = self.traced(of, if is_quick { QUICK } else { FINE })?;
+        let rendered = self.traced(of, LOOKS[look])?;
         if of.is_right() {
-            self.known.push((of.clone(), is_quick, rendered.clone()));
+            self.known.push((of.clone(), look, rendered.clone()));
         }
         Ok(rendered)
     }
@@ -584,6 +589,11 @@ impl Search<'_> {
     }
 }
 
+/// The least that what is left may be, for its deviation.
+fn lowest([excess, deviation]: [f64; 2]) -> f64 {
+    excess - 2.0 * deviation
+}
+
 /// The mistake whose picture depends on the random numbers.
 const SHARED: &str = "same-seed";
 
@@ -657,38 +667,29 @@ fn rough(seen: &[[f64; 3]], rendered: &Rendered, most: f64) -> f64 {
 }
 
 /// The picture with what fits best added, and a remark.
-pub fn with_added(
-    seen: &Seen,
-    written: &Written,
-    rendered: Rendered,
-    added: Added,
-) -> (Rendered, Option<String>) {
-    const STEPS: usize = 5;
-    let from = |index: usize| match added {
-        Added::Gain => index,
-        Added::Carry => index.saturating_sub(1),
+pub fn with_added(seen: &Seen, rendered: &Rendered, added: Added) -> (Rendered, Option<String>) {
+    const STEPS: usize = 4;
+    /// A brighter value may be the top of its range, which is only a lower bound.
+    const BRIGHT: f64 = 0.9;
+    let (from, least): (fn(usize) -> usize, f64) = match added {
+        Added::Gain => (|index| index, -0.99),
+        Added::Carry => (|index| index.saturating_sub(1), 0.0),
     };
-    let (right, mut times, mut at) = (rendered.mean(), 0.0, rendered.clone());
+    let (right, mut times) = (rendered.mean(), 0.0);
     for _ in 0..STEPS {
-        let fit = Fit::new(seen, written, &at);
         let (mut product, mut square) = (0.0, 1e-9);
-        for (index, left) in fit.left.iter().enumerate() {
-            for channel in (0..3).filter(|channel| left[*channel].is_finite()) {
-                // A value at the top of its range is only a lower bound.
-                if seen.values[index][channel] < 0.98 {
-                    let direction = right[from(index)][channel] / fit.steps[index][channel];
-                    product += direction * left[channel] / fit.variance[index][channel];
-                    square += direction * direction / fit.variance[index][channel];
+        for (index, values) in seen.values.iter().enumerate() {
+            for (channel, value) in values.iter().enumerate() {
+                let direction = right[from(index)][channel];
+                let expected = right[index][channel] + times * direction;
+                if value.is_finite() && expected < BRIGHT {
+                    let weight = 1.0 / expected.max(0.02);
+                    product += weight * direction * (value - expected);
+                    square += weight * direction * direction;
                 }
             }
         }
-        let least = if added == Added::Gain { -0.99 } else { 0.0 };
-        let before = times;
-        times = (times + product / square).max(least);
-        at = rendered.plus(times, from);
-        if (times - before).abs() < 1e-4 {
-            break;
-        }
+        times = f64::max(times + product / square, least);
     }
     let note = match added {
         Added::Gain => {
@@ -696,7 +697,7 @@ pub fn with_added(
         }
         Added::Carry => format!("each pixel holds about 1/{:.0} of the one before", 1.0 / times),
     };
-    (at, Some(note))
+    (rendered.plus(times, from), Some(note))
 }
 
 /// The factor by which the first pictures are smaller: a common divisor of both sides, if a suitable one exists.

@@ -360,20 +360,25 @@ impl Start {
 /// Shares of a number's reach at which it is tried.
 const TRIED: [f64; 6] = [-1.0, -0.5, -0.2, 0.2, 0.5, 1.0];
 
-/// Samples per pixel of the small pictures.
+/// Samples per pixel of the small pictures, and of those that are tried first.
 const SAMPLES: u64 = 16;
+const FEW: u64 = 8;
+
+/// A number must leave less than this share of what is left.
+const MOST: f64 = 0.7;
 
 /// The search for numbers on a small picture.
 impl Screen {
     /// Where the search begins.
     pub fn start(&mut self, studio: &mut Studio) -> Result<Start> {
         let at = self.base.clone();
-        Ok(Start { rest: self.quality(studio, &at, true)?, at, whats: Vec::new() })
+        Ok(Start { rest: self.quality(studio, &at, SAMPLES)?, at, whats: Vec::new() })
     }
 
-    fn quality(&mut self, studio: &mut Studio, of: &Hypothesis, is_far: bool) -> Result<f64> {
-        let rest = self.rest(studio, of, SAMPLES)?;
-        Ok(square(&rest, &self.weights(is_far)))
+    /// The square of what is left, to which the noise of the small picture adds nothing.
+    fn quality(&mut self, studio: &mut Studio, of: &Hypothesis, samples: u64) -> Result<f64> {
+        let [a, b] = self.halves(studio, of, samples)?;
+        Ok(a.iter().zip(&b).zip(self.weights(true)).map(|((a, b), weight)| weight * a * b).sum())
     }
 
     fn derivatives(&mut self, studio: &mut Studio, start: &Start) -> Result<Vec<[Vec<f64>; 2]>> {
@@ -392,8 +397,6 @@ impl Screen {
 
     /// Hypotheses with one number more, each solved on the small picture, the nearest first.
     pub fn one_more(&mut self, studio: &mut Studio, start: &Start) -> Result<Vec<Start>> {
-        /// A number must leave less than this share of what is left.
-        const MOST: f64 = 0.7;
         const SOLVED: usize = 8;
         const KEPT: usize = 3;
         let weights = self.weights(true);
@@ -408,7 +411,7 @@ impl Screen {
             let alone = Start { whats: vec![what], ..start.clone() };
             for share in TRIED.into_iter().filter(|_| start.whats.is_empty()) {
                 let at = alone.with(&[what.of(&start.at) + share * what.reach(&start.at).most]);
-                let left = self.quality(studio, &at, true)? / start.rest;
+                let left = self.quality(studio, &at, FEW)? / start.rest;
                 if left < best.0 && left < 0.9 {
                     best = (left, Start { at, ..alone.clone() });
                 }
@@ -419,7 +422,7 @@ impl Screen {
         let mut found = Vec::new();
         let solved = if start.whats.is_empty() { SOLVED } else { SOLVED / 2 };
         for (_, more) in tried.into_iter().filter(|(left, _)| *left < 0.99).take(solved) {
-            found.push(self.solved(studio, more)?);
+            found.push(self.solved(studio, more, MOST * start.rest)?);
         }
         found.retain(|it| it.rest < MOST * start.rest);
         found.sort_by(|a, b| a.rest.total_cmp(&b.rest));
@@ -427,8 +430,9 @@ impl Screen {
         Ok(found)
     }
 
-    /// Gauss-Newton: first with equal weights, as far away the noise says little, then with those of the noise.
-    fn solved(&mut self, studio: &mut Studio, mut start: Start) -> Result<Start> {
+    /// Gauss-Newton: first with equal weights, as far away the noise says little, then, if less than `most` is left, with those
+    /// of the noise.
+    fn solved(&mut self, studio: &mut Studio, mut start: Start, most: f64) -> Result<Start> {
         const STEPS: usize = 6;
         let reaches: Vec<Reach> = start.whats.iter().map(|what| what.reach(&self.base)).collect();
         let home: Vec<f64> = start.whats.iter().map(|what| what.of(&self.base)).collect();
@@ -460,8 +464,11 @@ impl Screen {
                     break;
                 }
             }
+            start.rest = self.quality(studio, &start.at, SAMPLES)?;
+            if start.rest > most {
+                break;
+            }
         }
-        start.rest = self.quality(studio, &start.at, true)?;
         Ok(start)
     }
 }

@@ -103,16 +103,17 @@ impl Screen {
         (0..values.len()).map(rest).map(|x| if x.is_finite() { x } else { 0.0 }).collect()
     }
 
-    /// The mean square of what is left beyond noise, in bytes.
-    pub fn excess(&mut self, studio: &mut Studio, of: &Hypothesis, samples: u64) -> Result<f64> {
+    /// The mean square of what is left beyond noise, in bytes, and its deviation.
+    pub fn excess(&mut self, studio: &mut Studio, of: &Hypothesis, samples: u64) -> Result<[f64; 2]> {
         let [a, b] = self.halves(studio, of, samples)?;
         let weights = self.weights(true);
-        let (mut sum, mut count) = (0.0, 1e-9);
-        for (index, weight) in weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
-            sum += 16.0 * weight * (a[index] * b[index] - self.noise.as_flattened()[index]);
-            count += 1.0;
-        }
-        Ok(sum / count)
+        let known = weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0);
+        let of_value =
+            |(at, weight): (usize, &f64)| 16.0 * weight * (a[at] * b[at] - self.noise.as_flattened()[at]);
+        let values: Vec<f64> = known.map(of_value).collect();
+        let count = values.len() as f64 + 1e-9;
+        let mean = values.iter().sum::<f64>() / count;
+        Ok([mean, values.iter().map(|x| (x - mean).powi(2)).sum::<f64>().sqrt() / count])
     }
 }
 

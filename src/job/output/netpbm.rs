@@ -12,10 +12,7 @@ use std::ops::ControlFlow;
 
 /// Reads a picture from the bytes of a file; of several in one file, the last.
 pub(super) fn read(file: &[u8]) -> Result<ReadPicture> {
-    ensure!(
-        !file.is_empty(),
-        "it is empty; did the program that writes it end early, or has it not written yet?"
-    );
+    ensure!(!file.is_empty(), "it is empty: the program that writes it has ended early, or not begun");
     let mut damages = Vec::new();
     let mut file = Cow::Borrowed(file);
     if let Some(text) = from_utf16(&file) {
