@@ -304,7 +304,7 @@ impl Finding {
     fn brightness(&self, mine: &Mine) -> Option<String> {
         let seen = Seen::of(mine, &self.right.hypothesis.written, |_, _| 0.0);
         let written = &self.right.hypothesis.written;
-        let (rendered, note) = with_added(&seen, &self.right.rendered, Added::Gain);
+        let (rendered, note) = with_added(&seen, written, self.right.rendered.clone(), Added::Gain);
         let fit = Fit::new(&seen, written, &rendered);
         note.filter(|_| fit.excess < 0.8 * self.right.fit.excess).map(|note| capitalised(&note))
     }

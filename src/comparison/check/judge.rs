@@ -454,7 +454,7 @@ impl Search<'_> {
         };
         if let Some(added) = hypothesis.added {
             let seen = self.seen(&hypothesis.written, None);
-            (rendered, hypothesis.note) = with_added(&seen, &rendered, added);
+            (rendered, hypothesis.note) = with_added(&seen, &hypothesis.written, rendered, added);
         }
         let mut best = Compared { fit: fit(&hypothesis, &rendered), hypothesis, rendered };
         if best.fit.excess > LEVELS || best.hypothesis.written.wraps {
@@ -667,29 +667,38 @@ fn rough(seen: &[[f64; 3]], rendered: &Rendered, most: f64) -> f64 {
 }
 
 /// The picture with what fits best added, and a remark.
-pub fn with_added(seen: &Seen, rendered: &Rendered, added: Added) -> (Rendered, Option<String>) {
-    const STEPS: usize = 4;
-    /// A brighter value may be the top of its range, which is only a lower bound.
-    const BRIGHT: f64 = 0.9;
-    let (from, least): (fn(usize) -> usize, f64) = match added {
-        Added::Gain => (|index| index, -0.99),
-        Added::Carry => (|index| index.saturating_sub(1), 0.0),
+pub fn with_added(
+    seen: &Seen,
+    written: &Written,
+    rendered: Rendered,
+    added: Added,
+) -> (Rendered, Option<String>) {
+    const STEPS: usize = 5;
+    let from = |index: usize| match added {
+        Added::Gain => index,
+        Added::Carry => index.saturating_sub(1),
     };
-    let (right, mut times) = (rendered.mean(), 0.0);
+    let (right, mut times, mut at) = (rendered.mean(), 0.0, rendered.clone());
     for _ in 0..STEPS {
+        let fit = Fit::new(seen, written, &at);
         let (mut product, mut square) = (0.0, 1e-9);
-        for (index, values) in seen.values.iter().enumerate() {
-            for (channel, value) in values.iter().enumerate() {
-                let direction = right[from(index)][channel];
-                let expected = right[index][channel] + times * direction;
-                if value.is_finite() && expected < BRIGHT {
-                    let weight = 1.0 / expected.max(0.02);
-                    product += weight * direction * (value - expected);
-                    square += weight * direction * direction;
+        for (index, left) in fit.left.iter().enumerate() {
+            for channel in (0..3).filter(|channel| left[*channel].is_finite()) {
+                // A value at the top of its range is only a lower bound.
+                if seen.values[index][channel] < 0.98 {
+                    let direction = right[from(index)][channel] / fit.steps[index][channel];
+                    product += direction * left[channel] / fit.variance[index][channel];
+                    square += direction * direction / fit.variance[index][channel];
                 }
             }
         }
-        times = f64::max(times + product / square, least);
+        let least = if added == Added::Gain { -0.99 } else { 0.0 };
+        let before = times;
+        times = (times + product / square).max(least);
+        at = rendered.plus(times, from);
+        if (times - before).abs() < 1e-4 {
+            break;
+        }
     }
     let note = match added {
         Added::Gain => {
@@ -697,7 +706,7 @@ pub fn with_added(seen: &Seen, rendered: &Rendered, added: Added) -> (Rendered, 
         }
         Added::Carry => format!("each pixel holds about 1/{:.0} of the one before", 1.0 / times),
     };
-    (rendered.plus(times, from), Some(note))
+    (at, Some(note))
 }
 
 /// The factor by which the first pictures are smaller: a common divisor of both sides, if a suitable one exists.

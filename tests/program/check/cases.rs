@@ -46,7 +46,7 @@ fn pictures_of_learners_are_understood() {
         ("center-ball-z-is-minus-1.png", None, "the z of the middle ball is -1,", true),
         ("index-is-1.33.png", Some("hollow-glass"), "index of the left ball is 1.33", true),
         ("left-ball-x-is-minus-1.1.png", None, "the x of the left ball is -1.1,", true),
-        ("right-ball-fuzz-is-0.3.png", None, "the fuzz of the right ball is 0.", true),
+        ("right-ball-fuzz-is-0.3.png", None, "the fuzz of the right ball is 0.3,", true),
     ] {
         let (mine, finding) = checked(&format!("learners/{name}"), stage);
         let explains = &finding.found.as_ref().unwrap_or(&finding.right).hypothesis;
