@@ -362,21 +362,20 @@ impl Search<'_> {
         near.retain(|(excess, _)| *excess < limit);
         near.dedup_by(|(a, _), (b, _)| a == b);
         near.truncate(COMPARED[2]);
-        let (mut found, mut limit) = (Vec::new(), f64::INFINITY);
+        let mut limit = f64::INFINITY;
         for (excess, hypothesis) in near {
             if excess < limit {
                 let tried = self.tried(&hypothesis)?;
                 if tried.fit.is_enough() {
-                    // Pictures that differ from an equal one are not equal.
+                    // What explains the picture as well is about as near.
                     limit = excess.max(0.0) + FINE_MOST;
                 }
-                found.push(tried);
+                compared.push(tried);
             }
         }
-        for hypothesis in whole.iter().filter(|_| limit.is_infinite()) {
-            found.push(self.tried(hypothesis)?);
+        for hypothesis in &whole {
+            compared.push(self.tried(hypothesis)?);
         }
-        compared.append(&mut found);
         Ok(screens)
     }
 
