@@ -170,33 +170,7 @@ pub fn close<T: Send + 'static>(backend: T) {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn each_fallback_is_tried_once() {
-        let mut failed = vec![BackendChoice::Gpu(GpuOptions::default())];
-        while let Some(next) = BackendChoice::fallback(&failed) {
-            failed.push(next);
-        }
-        let words: Vec<_> = failed.iter().map(BackendChoice::words).collect();
-        assert_eq!(words, ["the GPU", "the CPU", "the CPU's scalar code", "the reference"]);
-        let low_priority = CpuOptions { low_priority: true, ..CpuOptions::default() };
-        let scalar = BackendChoice::Cpu(CpuOptions { lanes: Some(1), ..low_priority });
-        assert_eq!(BackendChoice::fallback(&[scalar]), Some(BackendChoice::Cpu(low_priority)));
-    }
-
-    fn adapter(is_software: bool, lacks: Option<&str>) -> AdapterInfo {
-        AdapterInfo {
-            name: "an adapter".to_owned(),
-            kind: "other",
-            backend: "Vulkan".to_owned(),
-            driver: "driver 1".to_owned(),
-            is_software,
-            storage_binding_limit: 1 << 27,
-            buffer_limit: 1 << 28,
-            subgroup_size: 32,
-            lacks: lacks.map(str::to_owned),
-        }
-    }
+    use crate::render_gpu::tests::adapter;
 
     #[test]
     fn one_listed_backend_is_the_automatic_one() {
@@ -204,37 +178,37 @@ mod tests {
         let listed: Vec<_> = list().into_iter().filter(|line| line.is_auto).map(|line| line.device).collect();
         assert_eq!(listed, [auto(CpuOptions::default())]);
         assert_eq!(auto(CpuOptions { threads: Some(3), ..CpuOptions::default() }), "cpu");
-        let unfit = [adapter(true, None), adapter(false, Some("no compute shaders"))];
+        let software = adapter("software", "Vulkan", true, None);
+        let good = adapter("other", "Vulkan", false, None);
+        let lacking = adapter("other", "Vulkan", false, Some("no compute shaders"));
         let chosen = |adapters: &[AdapterInfo]| {
             let list = listing(vec![Isa::Portable, Isa::Sse42], adapters);
             list.iter().map(|line| line.is_auto).collect::<Vec<_>>()
         };
-        assert_eq!(chosen(&unfit), [false, true, false, false, false]);
-        let [software, _] = unfit;
-        let fit = [software, adapter(false, None), adapter(false, None)];
-        assert_eq!(chosen(&fit), [false, false, false, true, false, false]);
+        assert_eq!(chosen(&[software.clone(), lacking]), [false, true, false, false, false]);
+        assert_eq!(chosen(&[software, good.clone(), good]), [false, false, false, true, false, false]);
     }
 
     #[test]
-    fn a_fallback_keeps_threads_and_priority() {
-        let given = CpuOptions {
-            isa: Some(Isa::Portable),
-            lanes: Some(1),
-            threads: Some(3),
-            low_priority: true,
-            ..CpuOptions::default()
+    fn each_fallback_is_tried_once_with_the_threads_and_the_priority() {
+        let fallbacks = |first: BackendChoice| {
+            let mut failed = vec![first];
+            while let Some(next) = BackendChoice::fallback(&failed) {
+                failed.push(next);
+            }
+            failed
         };
-        let mut failed = vec![BackendChoice::Cpu(given)];
-        while let Some(next) = BackendChoice::fallback(&failed) {
-            failed.push(next);
-        }
-        // The plainest code is what failed.
-        let best = CpuOptions { isa: None, lanes: None, ..given };
+        let words: Vec<_> =
+            fallbacks(BackendChoice::Gpu(GpuOptions::default())).iter().map(BackendChoice::words).collect();
+        assert_eq!(words, ["the GPU", "the CPU", "the CPU's scalar code", "the reference"]);
+        let best = CpuOptions { threads: Some(3), low_priority: true, ..CpuOptions::default() };
+        let scalar = BackendChoice::Cpu(CpuOptions { lanes: Some(1), ..best });
+        assert_eq!(BackendChoice::fallback(&[scalar]), Some(BackendChoice::Cpu(best)));
+        let plainest = BackendChoice::Cpu(CpuOptions { isa: Some(Isa::Portable), lanes: Some(1), ..best });
+        let failed = fallbacks(plainest.clone());
         assert_eq!(failed[1..], [BackendChoice::Cpu(best), BackendChoice::Reference { threads: Some(3) }]);
         // Of several, the latest options count; those of other backends have none.
         let failed = [BackendChoice::Cpu(best), BackendChoice::Gpu(GpuOptions::default())];
-        assert_eq!(BackendChoice::fallback(&failed), Some(BackendChoice::Cpu(given)));
-        let gpu = [BackendChoice::Gpu(GpuOptions::default())];
-        assert_eq!(BackendChoice::fallback(&gpu), Some(BackendChoice::Cpu(CpuOptions::default())));
+        assert_eq!(BackendChoice::fallback(&failed), Some(plainest));
     }
 }

@@ -236,22 +236,6 @@ mod tests {
     }
 
     #[test]
-    fn unwritable_film_is_rescued_and_failures_are_named() {
-        let directory = tempfile::tempdir().unwrap();
-        let [out, film] = ["gone/picture.png", "missing/film.exr"].map(|name| directory.path().join(name));
-        let render = options(&["--out", out.to_str().unwrap(), "--checkpoint", film.to_str().unwrap()]);
-        let (film, written, failures) = write_two_samples(&render);
-        let [path] = written.files.as_slice() else { panic!("{failures}") };
-        let rescued = format!("in {}", path.display());
-        for part in ["gone", "missing", "--resume", &rescued] {
-            assert!(failures.contains(part), "{failures} should say {part}");
-        }
-        let read = checkpoint::load(path);
-        std::fs::remove_file(path).unwrap();
-        assert!(read.unwrap().film == film);
-    }
-
-    #[test]
     fn no_film_is_rescued_if_one_is_written() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name).to_str().unwrap().to_owned();
@@ -303,6 +287,9 @@ mod tests {
         assert!(warned(&["--out", &film, "--sample-range", "1..64"]).contains("--out"));
         let other = warned(&["--out", &film, "--seed", "3"]);
         assert!(other.contains("of another picture") && other.contains("seed"), "{other}");
+        let foreign = directory.path().join("foreign.exr").to_str().unwrap().to_owned();
+        std::fs::write(&foreign, "a picture").unwrap();
+        assert!(warned(&["--out", &foreign]).contains("is not an EXR file"));
         let refused = check(&["--checkpoint", &film, "--samples", "64"]).unwrap_err().to_string();
         assert!(refused.contains("--continue"), "{refused}");
     }

@@ -252,15 +252,11 @@ pub fn list() -> Result<ExitCode, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{Request, parse};
     use std::sync::atomic::Ordering;
 
     /// The options of a batch render of 4x3 pixels with these `flags`.
     pub(super) fn options(flags: &[&str]) -> BatchOptions {
-        let arguments = ["weekender", "--batch", "--size", "4x3", "--progress", "off"];
-        let arguments = arguments.into_iter().chain(flags.iter().copied());
-        let Request::Batch(options) = parse(arguments.map(Into::into)).unwrap() else { panic!("{flags:?}") };
-        *options
+        crate::cli::tests::batch(&[&["--size", "4x3", "--progress", "off"], flags].concat().join(" "))
     }
 
     #[test]

@@ -192,36 +192,8 @@ mod tests {
     use super::*;
 
     use crate::film::{ErrorEstimate, checkpoint};
-    use crate::job::render::{BackendInfo, Control, Outcome, RenderError, RenderJob, Renderer, Stats};
-    use std::ops::Range;
-    use std::sync::atomic::AtomicBool;
-
-    /// A renderer that fails after four samples.
-    struct Failing;
-
-    impl Renderer for Failing {
-        fn info(&self) -> BackendInfo {
-            BackendInfo { name: "failing", device: String::new(), lanes: 1, threads: 1 }
-        }
-
-        fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
-            Ok(())
-        }
-
-        fn advance(
-            &mut self,
-            _: &RenderJob,
-            samples: Range<u64>,
-            film: &mut Film,
-            _: &Control,
-        ) -> Result<Outcome, RenderError> {
-            if samples.end > 4 {
-                return Err(RenderError::Backend { backend: "failing", reason: "it broke".to_owned() });
-            }
-            film.record(samples, 0)?;
-            Ok(Stats::default().into())
-        }
-    }
+    use crate::job::render::tests::Scripted;
+    use crate::job::render::{BackendInfo, RenderError};
 
     #[test]
     fn failed_render_has_its_own_exit_code_and_files() {
@@ -231,8 +203,13 @@ mod tests {
         let options =
             crate::batch::tests::options(&[&["--samples", "64", "--device", "cpu"], &files[..]].concat());
         let interrupt = Interrupt::unheard();
-        let mut studio =
-            Studio::with_factory(Box::new(|_| Ok(Box::new(Failing))), &options.backend, &interrupt);
+        let failing = || {
+            Scripted::new(|_, samples, film, _| match samples.end {
+                0..5 => Ok(film.record(samples, 0)?),
+                _ => Err(RenderError::Backend { backend: "scripted", reason: "it broke".to_owned() }),
+            })
+        };
+        let mut studio = Studio::with_factory(Box::new(move |_| Ok(failing())), &options.backend, &interrupt);
         let files = Arc::new(Files::lock(options.clone(), Duration::ZERO).unwrap());
         let mut screen = Screen::new(&options, STEPS);
         let (_, outcome) = render(&files, None, &mut screen, &mut studio, &interrupt, |_, _| {});

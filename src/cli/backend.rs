@@ -83,14 +83,7 @@ impl Args for BackendChoice {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{Request, parse};
-
-    fn backend(flags: &str) -> Result<BackendChoice, String> {
-        match parse(format!("weekender --batch {flags}").split(' ').map(Into::into)) {
-            Ok(Request::Batch(options)) => Ok(options.backend),
-            other => Err(other.unwrap_err().to_string()),
-        }
-    }
+    use crate::cli::tests::{batch, refused};
 
     #[test]
     fn each_device_gets_only_its_own_options() {
@@ -102,21 +95,14 @@ mod tests {
             ("--device cpu --threads 3", BackendChoice::Cpu(cpu)),
             ("--device reference --threads 3", BackendChoice::Reference { threads: Some(3) }),
         ] {
-            assert_eq!(backend(flags), Ok(expected), "{flags}");
+            assert_eq!(batch(flags).backend, expected, "{flags}");
         }
-    }
-
-    #[test]
-    fn flags_of_other_devices_are_refused() {
-        for (flags, parts) in [
-            ("--device cpu --adapter some", ["--adapter", "the GPU"]),
-            ("--device reference --adapter some", ["--adapter", "the GPU"]),
-            ("--device reference --isa portable", ["--isa", "reference"]),
-            ("--device reference --simd 4", ["--simd", "reference"]),
-        ] {
-            let error = backend(flags).unwrap_err();
-            assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+        batch("--device gpu --simd 4"); // for the CPU that it may fall back to
+        for (flag, device) in
+            [("--adapter some", "cpu"), ("--adapter some", "reference"), ("--simd 4", "reference")]
+        {
+            let error = refused(&format!("--batch --device {device} {flag}"));
+            assert!(error.contains(&flag[..6]) && error.contains(device), "{error}");
         }
-        assert!(backend("--device gpu --simd 4").is_ok(), "for the CPU that it may fall back to");
     }
 }

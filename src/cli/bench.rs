@@ -133,12 +133,12 @@ impl BenchOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{Request, parse};
+    use crate::cli::Request;
+    use crate::cli::tests::request;
 
     fn options(words: &str) -> BenchOptions {
-        let line = format!("weekender bench --scene metals --isa portable --threads 1 {words}");
-        match parse(line.split(' ').map(Into::into)).unwrap() {
-            Request::Bench(options) => *options,
+        match request(&format!("bench --scene metals --isa portable --threads 1 {words}")) {
+            Ok(Request::Bench(options)) => *options,
             other => panic!("{other:?}"),
         }
     }

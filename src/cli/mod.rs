@@ -269,4 +269,4 @@ fn recorded(arguments: &[OsString]) -> String {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

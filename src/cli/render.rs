@@ -232,14 +232,7 @@ pub(super) fn plan(flags: &RenderFlags, recipe: &Recipe) -> Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{Request, parse};
-
-    fn render(line: &str) -> BatchOptions {
-        match parse(format!("weekender --batch {line}").split(' ').map(Into::into)).unwrap() {
-            Request::Batch(options) => *options,
-            other => panic!("{other:?}"),
-        }
-    }
+    use crate::cli::tests::batch;
 
     #[test]
     fn renders_end_as_requested() {
@@ -250,7 +243,7 @@ mod tests {
             ("--sample-range 4..9 --time-limit 5", Some(4..9), Some(5.0), None),
             ("--sample-range 4294967295..4294967296", Some(4_294_967_295..4_294_967_296), None, None),
         ] {
-            let plan = render(flags).plan;
+            let plan = batch(flags).plan;
             let found = plan.stop.samples.map(|end| plan.first_sample..end);
             assert_eq!((found, plan.stop.seconds, plan.stop.noise), (range, seconds, noise), "{flags}");
         }
@@ -258,12 +251,11 @@ mod tests {
 
     #[test]
     fn files_and_intervals_have_defaults() {
-        let options = render("--stage metal --checkpoint no-such.exr");
+        let options = batch("--stage metal --checkpoint no-such.exr");
         let [film, picture] = ["no-such.exr", "metal.png"].map(PathBuf::from);
         let film = Output { path: film, format: OutputFormat::Exr, is_checkpoint: true };
         let picture = Output { path: picture, format: OutputFormat::Png, is_checkpoint: false };
         assert_eq!((options.outputs, options.every), (vec![film, picture], Duration::from_secs(60)));
-        let options = render("--scene field:9 --checkpoint no-such.exr --every 5m");
-        assert_eq!(options.every, Duration::from_secs(300));
+        assert_eq!(batch("--checkpoint no-such.exr --every 5m").every, Duration::from_secs(300));
     }
 }

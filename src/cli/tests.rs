@@ -2,11 +2,19 @@
 
 use super::*;
 
-fn request(line: &str) -> Result<Request, Failure> {
+pub(super) fn request(line: &str) -> Result<Request, Failure> {
     parse(format!("weekender {line}").split(' ').map(Into::into))
 }
 
-fn refused(line: &str) -> String {
+/// The options of a batch render with these flags.
+pub(crate) fn batch(flags: &str) -> BatchOptions {
+    match request(&format!("--batch {flags}")) {
+        Ok(Request::Batch(options)) => *options,
+        other => panic!("{other:?}"),
+    }
+}
+
+pub(super) fn refused(line: &str) -> String {
     request(line).unwrap_err().to_string()
 }
 

@@ -27,15 +27,3 @@ pub fn counted(number: usize, noun: &str) -> String {
 pub fn grouped(number: u64) -> String {
     HumanCount(number).to_string()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rows_are_padded_and_counts_are_grouped() {
-        assert_eq!(text_row(&[-4, 3, -3], &["a", "1", "b"]), "a      1 b\n");
-        assert_eq!([0, 999, 1000, 1_234_567].map(grouped), ["0", "999", "1,000", "1,234,567"]);
-        assert_eq!([counted(1, "lane"), counted(8, "lane")], ["1 lane", "8 lanes"]);
-    }
-}

@@ -343,24 +343,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hierarchy_is_shared_with_same_anchors() {
-        let groups = |indices: &[u32], roots: Roots| {
-            let anchored = |&index: &u32| Anchored { index, roots, under_eye: false, near: DVec3::ZERO };
-            Groups {
-                opaque: vec![0, 3],
-                anchored: indices.iter().map(anchored).collect(),
-                ..Groups::default()
-            }
-        };
-        let one = groups(&[1], Roots::Nearer);
-        assert!(one.share_hierarchy(&groups(&[1], Roots::Both)), "only the roots differ");
-        let others: [&[u32]; 3] = [&[], &[2], &[1, 2]];
-        for other in others {
-            assert!(!one.share_hierarchy(&groups(other, Roots::Nearer)), "{other:?}");
-        }
-    }
-
-    #[test]
     fn eye_within_rounding_is_on_surface() {
         for far in [1e8, -1e8] {
             let position = DVec3::splat(far);

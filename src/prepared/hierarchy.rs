@@ -202,15 +202,4 @@ mod tests {
         let tree = in_walking_order(parted::build(&bounded, 1, true, &go_on));
         assert_eq!(depth(&tree.nodes), 8);
     }
-
-    #[test]
-    fn regions_are_joined_into_one_tree() {
-        let spheres = crate::scene::builtin::field(50_000).0.spheres.split_off(1);
-        let hierarchy = Hierarchy::<f32>::build(&spheres, DVec3::ZERO, Effort::Quick);
-        let mut ranks = hierarchy.ranks.clone();
-        ranks.sort_unstable();
-        assert!(ranks.into_iter().eq(0..spheres.len() as u32), "each sphere is in it once");
-        let one_region = Hierarchy::<f32>::build(&spheres, DVec3::ZERO, Effort::Thorough);
-        assert_eq!(hierarchy.extent, one_region.extent);
-    }
 }

@@ -255,16 +255,14 @@ impl Drop for Progressive {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::recipe::Recipe;
 
     #[test]
     fn a_render_without_a_thread_gives_the_same_film() {
-        let mut recipe = Recipe::find("three-spheres").unwrap();
-        (recipe.settings.width, recipe.settings.height) = (12, 7);
+        let job = crate::job::render::tests::sized("three-spheres", [12, 7]);
         let backend = BackendChoice::Reference { threads: Some(1) };
         let render = |has_thread: bool, stops: bool| {
             let plan = Plan::samples(64);
-            let request = RenderRequest::new(recipe.job().unwrap(), backend.clone(), plan);
+            let request = RenderRequest::new(job.clone(), backend.clone(), plan);
             let mut progressive = Progressive::with_worker(Box::new(backends::create), has_thread).unwrap();
             let status = progressive.watch(request, |progressive, status| {
                 if stops && status.samples_per_pixel > 0 {

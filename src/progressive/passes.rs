@@ -107,12 +107,6 @@ mod tests {
     }
 
     #[test]
-    fn passes_double_and_end_at_the_plan() {
-        let found = passes(2, SampleRanges::default(), 0..200);
-        assert_eq!(found, [0..2, 2..4, 4..8, 8..16, 16..32, 32..64, 64..128, 128..192, 192..200]);
-    }
-
-    #[test]
     fn passes_are_aligned_fill_every_gap_and_never_overlap() {
         for smallest in [1, 2] {
             for planned in [0..1, 0..77, 3..17, 64..1000, 5..6] {
@@ -131,23 +125,22 @@ mod tests {
 
     #[test]
     fn slow_passes_stay_small_and_fit_the_time_left() {
-        let mut sizer = PassSizer::new(2, 2);
-        let held = SampleRanges::default();
-        sizer.measured(2, Duration::from_secs(20), TARGET);
-        assert_eq!(sizer.next(&held, 0..100, None), Some(0..2));
-        assert_eq!(sizer.next(&held, 0..100, Some(TARGET)), None);
-        sizer.measured(64, Duration::from_secs(1), TARGET);
-        assert_eq!(sizer.next(&held, 0..100, Some(TARGET / 4)), Some(0..16));
-    }
-
-    #[test]
-    fn shortest_pass_gives_each_half_a_sample() {
-        let mut sizer = PassSizer::new(2, 2);
-        sizer.measured(2, Duration::from_secs(20), TARGET);
-        let in_time =
-            |seconds| sizer.next(&SampleRanges::default(), 0..100, Some(Duration::from_secs(seconds)));
-        assert_eq!(in_time(15), None, "there is time for one sample");
-        assert_eq!(in_time(25), Some(0..2));
+        let (mut sizer, none) = (PassSizer::new(2, 2), SampleRanges::default());
+        let within =
+            |sizer: &PassSizer, seconds| sizer.next(&none, 0..100, Some(Duration::from_millis(seconds)));
+        sizer.measured(2, 20 * TARGET, TARGET);
+        assert_eq!(sizer.next(&none, 0..100, None), Some(0..2));
+        // Each half gets a sample, and 15 seconds are enough for one only.
+        assert_eq!([1000, 15_000, 25_000].map(|time| within(&sizer, time)), [None, None, Some(0..2)]);
+        let mut restarted = sizer.clone();
+        restarted.restart();
+        assert_eq!(
+            [0, 1000].map(|time| within(&restarted, time)),
+            [None, Some(0..2)],
+            "the speed is unknown"
+        );
+        sizer.measured(64, TARGET, TARGET);
+        assert_eq!(within(&sizer, 250), Some(0..16));
     }
 
     #[test]
@@ -174,16 +167,5 @@ mod tests {
             sizer.measured(1 << 16, took, TARGET);
             assert_eq!(length(&sizer), 1 << 16, "{took:?}");
         }
-    }
-
-    #[test]
-    fn restart_forgets_the_speed() {
-        let (mut sizer, none) = (PassSizer::new(2, 2), SampleRanges::default());
-        let in_a_second = |sizer: &PassSizer| sizer.next(&none, 0..100, Some(TARGET));
-        sizer.measured(2, 10 * TARGET, TARGET);
-        assert_eq!(in_a_second(&sizer), None);
-        sizer.restart();
-        assert_eq!(in_a_second(&sizer), Some(0..2));
-        assert_eq!(sizer.next(&none, 0..100, Some(Duration::ZERO)), None, "no time is left");
     }
 }

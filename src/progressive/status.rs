@@ -169,17 +169,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn speeds_are_counts_over_the_seconds_of_tracing() {
-        let stats = Stats { paths: 100, rays: 300, busy_lanes: 6, offered_lanes: 8, ..Stats::default() };
-        let (trace, elapsed) = (Duration::from_secs(2), Duration::from_secs(5));
-        let status = Status { stats, trace, elapsed, ..Status::default() };
-        assert_eq!((status.paths_per_second(), status.rays_per_second()), (50.0, 150.0));
-        assert_eq!(status.lane_occupancy(), Some(0.75));
-        let nothing = Status::default();
-        assert_eq!((nothing.paths_per_second(), nothing.lane_occupancy()), (0.0, None));
-    }
-
-    #[test]
     fn backends_with_other_options_are_credited_separately() {
         let info = |lanes| BackendInfo { name: "cpu", device: "x".to_owned(), lanes, threads: 1 };
         let mut status = Status::default();

@@ -206,21 +206,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn estimate_needs_few_tiles() {
-        for (tile_count, one_in, expected) in [
-            (0, 16, vec![]),
-            (1, 16, vec![0]),
-            (6, 16, vec![3]),
-            (16, 16, vec![8]),
-            (91, 16, vec![8, 24, 40, 56, 72, 88]),
-            (91, 128, vec![45]),
-        ] {
-            let probed = (0..tile_count).filter(|number| is_probed(*number, tile_count, one_in));
-            assert_eq!(probed.collect::<Vec<usize>>(), expected, "of {tile_count}");
-        }
-    }
-
-    #[test]
     fn pass_is_given_up_before_half_of_its_tiles_have_begun() {
         for (begun, is_given_up) in [(0, true), (1, true), (2, true), (3, false), (4, false)] {
             let requested = AtomicBool::new(false);

@@ -100,8 +100,8 @@ impl Rebuild {
 mod tests {
     use super::*;
     use crate::film::Film;
-    use crate::job::recipe::Recipe;
     use crate::job::render::Renderer;
+    use crate::job::render::tests::sized;
     use crate::render_cpu::pass::Prepared;
     use crate::render_cpu::{CpuOptions, CpuRenderer};
     use glam::DVec3;
@@ -110,9 +110,7 @@ mod tests {
     const PASSES: std::ops::Range<u64> = 0..6;
 
     fn field(spheres: u32) -> RenderJob {
-        let mut recipe = Recipe::find(&format!("field:{spheres}")).unwrap();
-        (recipe.settings.width, recipe.settings.height) = (20, 12);
-        recipe.job().unwrap()
+        sized(&format!("field:{spheres}"), [20, 12])
     }
 
     fn renderer(patience: u32) -> CpuRenderer {

@@ -65,21 +65,15 @@ fn recorder(isa: Isa) -> Recorder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::recipe::Recipe;
     use crate::job::render::Renderer;
+    use crate::job::render::tests::sized;
     use crate::render_cpu::{CpuOptions, CpuRenderer};
     use std::sync::atomic::AtomicBool;
-
-    fn small_job(scene: &str) -> RenderJob {
-        let mut recipe = Recipe::find(scene).expect("a built-in scene");
-        (recipe.settings.width, recipe.settings.height) = (12, 7);
-        recipe.job().expect("valid")
-    }
 
     #[test]
     fn records_match_the_rendered_paths() {
         for scene in ["three-spheres", "book"] {
-            let job = small_job(scene);
+            let job = sized(scene, [12, 7]);
             for isa in Isa::available() {
                 let options = CpuOptions { isa: Some(isa), ..CpuOptions::default() };
                 let mut renderer = CpuRenderer::new(options).expect("available");

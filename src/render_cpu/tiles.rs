@@ -80,33 +80,4 @@ mod tests {
             assert_eq!(tile_side(size[0], size[1], threads), expected, "{size:?}, {threads} threads");
         }
     }
-
-    #[test]
-    fn each_tile_has_its_own_pixels_of_both_halves() {
-        const WIDTH: usize = 20;
-        let half = |half: u64| (0..200).map(|pixel| PixelSum([pixel, half, 0])).collect::<Vec<_>>();
-        let mut halves = [half(0), half(1)];
-        let tiles = tiles(&mut halves, WIDTH as u32, 8);
-        let places: Vec<_> = tiles.iter().map(|tile| (tile.corner, tile.size())).collect();
-        let expected = [
-            ([0, 0], [8, 8]),
-            ([8, 0], [8, 8]),
-            ([16, 0], [4, 8]),
-            ([0, 8], [8, 2]),
-            ([8, 8], [8, 2]),
-            ([16, 8], [4, 2]),
-        ];
-        assert_eq!(places, expected);
-        for tile in &tiles {
-            let height = tile.height as usize;
-            assert_eq!(tile.rows.len(), 2 * height);
-            for (number, row) in tile.rows.iter().enumerate() {
-                let (half, y) = (number / height, tile.corner[1] as usize + number % height);
-                let first = (y * WIDTH + tile.corner[0] as usize) as u64;
-                let sums =
-                    (first..).zip(row.iter()).all(|(pixel, sum)| *sum == PixelSum([pixel, half as u64, 0]));
-                assert!(sums && row.len() as u32 == tile.size()[0], "{:?}, row {number}", tile.corner);
-            }
-        }
-    }
 }

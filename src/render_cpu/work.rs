@@ -290,17 +290,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn order_holds_every_pixel_once() {
-        for [width, height] in [[1, 1], [3, 5], [8, 8], [64, 7], [256, 256]] {
-            let order = RefillOrder::new(width, height);
-            let mut places = order.places[..order.len()].to_vec();
-            places.sort_unstable();
-            let expected: Vec<u32> = (0..height).flat_map(|y| (0..width).map(move |x| x | y << 16)).collect();
-            assert_eq!(places, expected, "{width}x{height}");
-        }
-    }
-
-    #[test]
     fn lanes_wait_where_blocks_are_short() {
         let settings = RenderSettings::default();
         let order = RefillOrder::new(1, 1);

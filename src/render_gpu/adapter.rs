@@ -183,7 +183,7 @@ pub fn adapters() -> Vec<AdapterInfo> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(crate) mod tests {
     use super::*;
 
     pub fn adapter(kind: &'static str, backend: &str, is_software: bool, lacks: Option<&str>) -> AdapterInfo {

@@ -48,7 +48,6 @@ pub fn tile_size(width: u32, height: u32) -> [u32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::recipe::Recipe;
 
     #[test]
     fn tiles_are_square_where_the_picture_has_room() {
@@ -63,24 +62,5 @@ mod tests {
         ] {
             assert_eq!(tile_size(width, height), expected, "{width}x{height}");
         }
-    }
-
-    #[test]
-    fn a_job_has_the_spheres_in_their_order() {
-        let mut recipe = Recipe::find("three-spheres").unwrap();
-        (recipe.settings.width, recipe.settings.height, recipe.settings.seed) = (100, 3, 9);
-        let prepared = PreparedScene::<f32>::new(&recipe.job().unwrap());
-        let job = GpuJob::new(&prepared, 5);
-        assert_eq!((job.width, job.height, job.tile_width, job.node_count), (100, 3, 16, 5));
-        assert_eq!((job.seed, job.max_depth, job.extent), (9, recipe.settings.max_depth, 0.0));
-        let listed = [&prepared.opaque[..], &prepared.two_root[..]].concat();
-        let counts = [job.opaque_count, job.two_root_count, job.anchored_count].map(|count| count as usize);
-        assert_eq!(counts, [prepared.opaque.len(), prepared.two_root.len(), prepared.anchored.len()]);
-        assert!(prepared.opaque.len() > 1 && prepared.two_root.len() > 1, "the order matters");
-        assert_eq!(job.few_spheres[..listed.len()], listed);
-        assert!(job.few_spheres[listed.len()..].iter().all(|row| *row == [0.0; 4]));
-        let field = Recipe::find("field:60").unwrap().job().unwrap();
-        let prepared = PreparedScene::<f32>::new(&field);
-        assert_eq!(Some(GpuJob::new(&prepared, 0).extent), prepared.hierarchy.map(|h| h.extent));
     }
 }

@@ -18,6 +18,8 @@ mod schedule;
 pub mod shader_source;
 mod trace;
 
+#[cfg(test)]
+pub(crate) use adapter::tests;
 pub use adapter::{AdapterInfo, BUSY_THREADS_OF_SOFTWARE, SOFTWARE_THREADS_IN_STEP, adapters};
 pub use options::{BATCH_TARGET, GpuError, GpuOptions, GpuReport, INTERACTIVE_TARGET};
 pub use scene::{Exported, ITERATION_LIMIT, SHARED_BLOCK};

@@ -117,29 +117,8 @@ mod tests {
     use super::*;
     use crate::job::recipe::Recipe;
     use crate::job::render::RenderSettings;
-    use crate::prepared::wide_bvh::NODE_ROWS;
     use crate::scene::{Camera, Material, Scene};
     use crate::stages::Rules;
-
-    #[test]
-    fn each_sphere_has_its_record_and_its_rank() {
-        let job = Recipe::find("field:500").unwrap().job().unwrap();
-        let mut prepared = PreparedScene::<f32>::wide(&job);
-        let data = SceneData::new(&mut prepared);
-        for (sphere, record) in data.spheres.iter().zip(&data.records) {
-            assert_eq!(sphere[..3], record[..3], "the centre");
-        }
-        let mut ranks = data.nodes[NODE_ROWS * data.node_count as usize..].concat();
-        // They fill whole rows of four.
-        assert_eq!(ranks.len(), data.spheres.len().next_multiple_of(4));
-        ranks.truncate(data.spheres.len());
-        let list = PreparedScene::<f32>::as_list(&job).scene_index;
-        for (rank, index) in ranks.iter().zip(&prepared.scene_index) {
-            assert_eq!(list[*rank as usize], *index);
-        }
-        ranks.sort_unstable();
-        assert!(ranks.into_iter().eq(0..data.spheres.len() as u32), "each rank once");
-    }
 
     #[test]
     fn a_ray_tests_all_spheres_that_are_in_no_hierarchy() {

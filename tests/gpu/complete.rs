@@ -1,7 +1,8 @@
 //! All requested samples are added, despite long paths, many samples, loops that a driver cuts short, and a device that
 //! leaves samples out.
 
-use crate::common::gpu::{cpu, go_on, gpu, job_of, picture_mean, rendered};
+use crate::common::films::{mean, rendered};
+use crate::common::gpu::{cpu, go_on, gpu, job_of, three_spheres};
 use glam::DVec3;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -15,11 +16,10 @@ use weekender::stages::{Rules, SurfaceRule};
 #[test]
 fn few_pixels_with_many_samples() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
-    let (scene, camera) = (BuiltinScene::ALL[0].build)();
-    let job = job_of(&scene, camera, [4, 4], 50, SamplerKind::Sobol);
+    let job = three_spheres([4, 4], 50);
     let samples = 2 * u64::from(ITERATION_LIMIT);
     let [on_gpu, on_cpu] =
-        [&mut gpu as &mut dyn Renderer, &mut cpu()].map(|r| picture_mean(&rendered(r, &job, samples)));
+        [&mut gpu as &mut dyn Renderer, &mut cpu()].map(|r| mean(&rendered(r, &job, samples)));
     assert!((on_gpu - on_cpu).abs() < 1e-4, "{on_gpu} {on_cpu}");
 }
 
@@ -38,7 +38,7 @@ fn longest_paths_are_complete() {
     let mut film = job.new_film();
     let stats = gpu.accumulate(&job, 0..8, &mut film, &go_on()).unwrap();
     assert_eq!((stats.paths, stats.rays), (15 * 8, 15 * 8 * 10_000));
-    assert_eq!((film.rejected(), picture_mean(&film)), (0, 0.0));
+    assert_eq!((film.rejected(), mean(&film)), (0, 0.0));
 }
 
 /// Suspending paths does not change the film, even with glass that stores the angle of incidence from ray to ray.
@@ -63,14 +63,24 @@ fn suspending_paths_keeps_film() {
     assert!(in_turns.report().dispatches > 10 * at_once.report().dispatches);
 }
 
+/// A renderer that suspends most paths.
+fn suspending() -> Option<GpuRenderer> {
+    gpu(GpuOptions { iteration_limit: Some(8), samples_per_dispatch: Some(1), ..GpuOptions::default() })
+}
+
+/// A renderer that was used before renders like a new one.
+fn assert_starts_afresh(mut used: GpuRenderer) {
+    let (scene, camera) = (BuiltinScene::ALL[0].build)();
+    let job = job_of(&scene, camera, [5, 3], 30, SamplerKind::Independent);
+    assert!(rendered(&mut used, &job, 8) == rendered(&mut suspending().unwrap(), &job, 8));
+    let messages = used.take_messages();
+    assert!(!messages.iter().any(|message| message.contains("traced again")), "{messages:?}");
+}
+
 /// A picture does not resume the suspended paths of an abandoned one.
 #[test]
 fn abandoned_paths_are_not_resumed() {
-    let options =
-        GpuOptions { iteration_limit: Some(8), samples_per_dispatch: Some(1), ..GpuOptions::default() };
-    let Some(mut used) = gpu(options.clone()) else { return };
-    let (scene, camera) = (BuiltinScene::ALL[0].build)();
-    let job = job_of(&scene, camera, [5, 3], 30, SamplerKind::Independent);
+    let Some(mut used) = suspending() else { return };
     let long = closed(200);
     // Cancel while dispatches are under way, however long the device takes to start.
     let mut time = Duration::from_millis(10);
@@ -86,17 +96,13 @@ fn abandoned_paths_are_not_resumed() {
         });
         time *= 2;
     }
-    assert!(rendered(&mut used, &job, 8) == rendered(&mut gpu(options).unwrap(), &job, 8));
-    let messages = used.take_messages();
-    assert!(!messages.iter().any(|message| message.contains("traced again")), "{messages:?}");
+    assert_starts_afresh(used);
 }
 
 /// A picture does not resume the paths of an earlier one whose rays no loop of the driver can trace.
 #[test]
 fn stuck_paths_are_not_resumed() {
-    let options =
-        GpuOptions { iteration_limit: Some(8), samples_per_dispatch: Some(1), ..GpuOptions::default() };
-    let Some(mut used) = gpu(options.clone()) else { return };
+    let Some(mut used) = suspending() else { return };
     if !used.adapter().is_software {
         return;
     }
@@ -110,19 +116,14 @@ fn stuck_paths_are_not_resumed() {
     let long = job_of(&scene, camera, [5, 3], 30, SamplerKind::Independent);
     let error = used.accumulate(&long, 0..1, &mut long.new_film(), &go_on()).unwrap_err().to_string();
     assert!(error.contains("a loop of this driver"), "{error}");
-    let (scene, camera) = (BuiltinScene::ALL[0].build)();
-    let job = job_of(&scene, camera, [5, 3], 30, SamplerKind::Independent);
-    assert!(rendered(&mut used, &job, 8) == rendered(&mut gpu(options).unwrap(), &job, 8));
-    let messages = used.take_messages();
-    assert!(!messages.iter().any(|message| message.contains("traced again")), "{messages:?}");
+    assert_starts_afresh(used);
 }
 
 /// A film keeps the samples it has; those still on the device are traced again and do not count twice.
 #[test]
 fn cancelled_samples_on_device_are_lost() {
     let Some(mut other) = gpu(GpuOptions::default()) else { return };
-    let (scene, camera) = (BuiltinScene::ALL[0].build)();
-    let job = job_of(&scene, camera, [16, 9], 12, SamplerKind::Sobol);
+    let job = three_spheres([16, 9], 12);
     let expected = rendered(&mut other, &job, 8);
     let mut used = gpu(GpuOptions::default()).unwrap();
     for _ in 0..2 {
@@ -155,8 +156,7 @@ fn long_lists_are_complete_or_refused() {
         RenderJob::new(scene, camera, settings, rules).unwrap()
     };
     let job = list(6000);
-    let [on_gpu, on_cpu] =
-        [&mut gpu as &mut dyn Renderer, &mut cpu()].map(|r| picture_mean(&rendered(r, &job, 4)));
+    let [on_gpu, on_cpu] = [&mut gpu as &mut dyn Renderer, &mut cpu()].map(|r| mean(&rendered(r, &job, 4)));
     assert!((on_gpu - on_cpu).abs() < 0.05, "{on_gpu} {on_cpu}");
     let job = list(ITERATION_LIMIT);
     let outcome = gpu.accumulate(&job, 0..1, &mut job.new_film(), &go_on());
@@ -170,8 +170,7 @@ fn long_lists_are_complete_or_refused() {
 fn cut_short(samples_per_dispatch: u64) -> Option<(GpuRenderer, RenderJob)> {
     let (samples_per_dispatch, iteration_limit) = (Some(samples_per_dispatch), Some(u32::MAX));
     let gpu = gpu(GpuOptions { samples_per_dispatch, iteration_limit, ..GpuOptions::default() })?;
-    let (scene, camera) = (BuiltinScene::ALL[0].build)();
-    let job = job_of(&scene, camera, [5, 3], 12, SamplerKind::Sobol);
+    let job = three_spheres([5, 3], 12);
     gpu.adapter().is_software.then_some((gpu, job))
 }
 
@@ -204,8 +203,7 @@ fn a_driver_that_always_leaves_samples_out_is_given_up() {
 
 #[test]
 fn duplicate_samples_are_refused() {
-    let (scene, camera) = (BuiltinScene::ALL[0].build)();
-    let job = job_of(&scene, camera, [16, 9], 12, SamplerKind::Sobol);
+    let job = three_spheres([16, 9], 12);
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let expected = rendered(&mut gpu, &job, 4);
     assert!(gpu.report().films > 0 && gpu.report().film_time > Duration::ZERO);

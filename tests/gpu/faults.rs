@@ -1,16 +1,13 @@
 //! A device that fails in the middle of a render: the CPU completes the picture, and no sample is lost or counted twice.
 
-use crate::common::gpu::{cpu, go_on, gpu, job_of};
+use crate::common::gpu::{cpu, go_on, gpu, three_spheres};
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 use weekender::backends::{self, BackendChoice};
 use weekender::film::Film;
-use weekender::job::render::{
-    BackendInfo, Control, Outcome, RenderError, RenderJob, Renderer, SamplerKind, Stats,
-};
+use weekender::job::render::{BackendInfo, Control, Outcome, RenderError, RenderJob, Renderer, Stats};
 use weekender::progressive::{EndReason, Phase, Plan, Progressive, RenderRequest};
 use weekender::render_gpu::{GpuOptions, GpuRenderer};
-use weekender::scene::builtin::BuiltinScene;
 
 /// A call of a renderer; passes are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,8 +80,7 @@ impl Renderer for Breaking {
 }
 
 fn job() -> RenderJob {
-    let (scene, camera) = (BuiltinScene::ALL[0].build)();
-    job_of(&scene, camera, [64, 36], 8, SamplerKind::Sobol)
+    three_spheres([64, 36], 8)
 }
 
 #[test]

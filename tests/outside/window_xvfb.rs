@@ -1,18 +1,15 @@
 //! A real window on its own X display, used with mouse and keyboard as a person would.
 #![cfg(target_os = "linux")]
 
+use crate::common::program::{PATIENCE, PROGRAM, film, outcome, signal, until, wait};
 use crate::common::skip::{report_untested, skip};
-use rustix::process::{Pid, Signal};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use weekender::app::Device;
-use weekender::film::checkpoint;
 use weekender::job::output::read_description;
 use weekender::stages::Stage;
-
-const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Whether these programs are available. If not, prints so, and fails if they are required.
 fn are_there(programs: &[&str], consequence: &str) -> bool {
@@ -39,13 +36,9 @@ impl Drop for Display {
 }
 
 impl Display {
-    /// `None`, with a message, if programs for it are missing and not required.
-    fn start() -> Option<Display> {
-        Display::with(&[])
-    }
-
-    /// A display whose server has these arguments, too.
-    fn with(arguments: &[&str]) -> Option<Display> {
+    /// A display whose server has these arguments, too. `None`, with a message, if programs for it are missing and not
+    /// required.
+    fn start(arguments: &[&str]) -> Option<Display> {
         if !are_there(&["Xvfb", "xdotool"], "no window was tried") {
             return None;
         }
@@ -62,7 +55,7 @@ impl Display {
     }
 
     fn weekender(&self, home: &Path) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
+        let mut command = Command::new(PROGRAM);
         command.env("DISPLAY", &self.name).env_remove("WAYLAND_DISPLAY");
         command.env("HOME", home).env("XDG_DATA_HOME", home.join("data")).current_dir(home);
         command.env("XDG_STATE_HOME", home.join("state"));
@@ -86,7 +79,7 @@ impl Display {
     /// Waits until the title of a window contains this text.
     fn wait_for_title(&self, id: &str, text: &str) {
         let title = || self.xdotool(&["getwindowname", id]).stdout;
-        wait_for(text, || String::from_utf8_lossy(&title()).contains(text));
+        until(text, || String::from_utf8_lossy(&title()).contains(text));
     }
 
     fn wait_for_window(&self, child: &mut Child) -> String {
@@ -106,24 +99,6 @@ impl Display {
     }
 }
 
-fn wait_for_end(child: &mut Child) -> std::process::ExitStatus {
-    let begin = Instant::now();
-    loop {
-        if let Some(status) = child.try_wait().unwrap() {
-            return status;
-        }
-        if begin.elapsed() > PATIENCE {
-            let _ = child.kill();
-            panic!("it did not end");
-        }
-        std::thread::sleep(Duration::from_millis(50));
-    }
-}
-
-fn wait_for_file(path: &Path) {
-    wait_for(&path.display().to_string(), || path.exists());
-}
-
 fn pixels(path: &Path) -> (u32, u32, Vec<u8>) {
     let picture = image::open(path).unwrap().to_rgb8();
     (picture.width(), picture.height(), picture.into_raw())
@@ -136,12 +111,12 @@ fn save(display: &Display, path: &Path) {
     display.key("ctrl+a");
     display.type_text(path.to_str().unwrap());
     display.key("Return");
-    wait_for_file(path);
+    until("no file", || path.exists());
 }
 
 #[test]
 fn a_person_can_use_the_window() {
-    let Some(display) = Display::start() else { return };
+    let Some(display) = Display::start(&[]) else { return };
     let home = tempfile::tempdir().unwrap();
     let mut child = display
         .weekender(home.path())
@@ -185,7 +160,7 @@ fn a_person_can_use_the_window() {
     let saved = home.path().join("saved.png");
     save(&display, &saved);
     display.key("ctrl+q");
-    let status = wait_for_end(&mut child);
+    let status = wait(&mut child);
     assert_eq!(status.code(), Some(0), "{status}");
 
     // Rendering the saved recipe without a window gives the same picture.
@@ -217,96 +192,79 @@ fn films(home: &Path) -> Vec<PathBuf> {
     paths.filter(|path| path.extension().is_some_and(|ending| ending == "exr")).collect()
 }
 
-fn wait_for(what: &str, is_so: impl Fn() -> bool) {
-    let begin = Instant::now();
-    while !is_so() {
-        assert!(begin.elapsed() < PATIENCE, "never: {what}");
-        std::thread::sleep(Duration::from_millis(50));
-    }
-}
-
 #[test]
 fn a_killed_window_loses_little_and_a_terminated_one_nothing() {
-    let Some(display) = Display::start() else { return };
+    let Some(display) = Display::start(&[]) else { return };
     let home = tempfile::tempdir().unwrap();
-    let samples_in = |path: &Path| checkpoint::load(path).unwrap().film.sample_count();
+    let samples_in = |path: &Path| film(path).sample_count();
     let stage = ["--stage", "glass-refract", "--size", "240x135", "--samples", "4000000000"];
     let often = ["--device", "cpu", "--autosave-every", "0.5s"];
     let mut first = display.weekender(home.path()).args(stage).args(often).spawn().unwrap();
-    wait_for("a film", || !films(home.path()).is_empty());
+    until("no film", || !films(home.path()).is_empty());
     first.kill().unwrap();
     first.wait().unwrap();
-    let film = films(home.path()).remove(0);
-    let samples = samples_in(&film);
+    let kept = films(home.path()).remove(0);
+    let samples = samples_in(&kept);
 
     // A window with another picture leaves it alone.
     let other = ["--stage", "metal", "--size", "32x18"];
     let mut second = display.weekender(home.path()).args(other).args(often).spawn().unwrap();
     display.wait_for_window(&mut second);
     std::thread::sleep(Duration::from_secs(6));
-    assert_eq!(samples_in(&film), samples);
+    assert_eq!(samples_in(&kept), samples);
     second.kill().unwrap();
     second.wait().unwrap();
 
     // A window that is terminated saves its film, and the next one continues it.
     let resume = home.path().join("resumed.exr");
-    std::fs::copy(&film, &resume).unwrap();
+    std::fs::copy(&kept, &resume).unwrap();
     let goes_on = ["--resume", resume.to_str().unwrap(), "--samples", "4000000000"];
     let mut before = samples;
     for flags in [&goes_on[..], &[]] {
         let mut next = display.weekender(home.path()).args(flags).args(often).spawn().unwrap();
         display.wait_for_window(&mut next);
         std::thread::sleep(Duration::from_secs(4));
-        rustix::process::kill_process(Pid::from_child(&next), Signal::TERM).unwrap();
-        assert_eq!(wait_for_end(&mut next).code(), Some(143));
-        let after = samples_in(&film);
+        signal(&next, "TERM");
+        assert_eq!(wait(&mut next).code(), Some(143));
+        let after = samples_in(&kept);
         assert!(after > before, "{after} after {before}");
         before = after;
     }
-    let film = checkpoint::load(&film).unwrap().film;
 
     // It has the bits of an uninterrupted render.
-    let count = film.sample_count().to_string();
+    let count = samples_in(&kept).to_string();
     let whole = home.path().join("whole.exr");
     let batch =
         [&stage[..4], &["--batch", "--device", "cpu", "--samples", &count, "--out", "whole.exr"]].concat();
     let output = display.weekender(home.path()).args(batch).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    assert!(film == checkpoint::load(&whole).unwrap().film);
+    assert!(film(&kept) == film(&whole));
 }
 
 #[test]
 fn without_a_display_the_message_names_the_way_out() {
     let home = tempfile::tempdir().unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_weekender"))
-        .env_remove("DISPLAY")
-        .env_remove("WAYLAND_DISPLAY")
-        .env_remove("WAYLAND_SOCKET")
-        .env("HOME", home.path())
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(told.contains("no display") && told.contains("--batch"), "{told}");
-
-    let output = Command::new(env!("CARGO_BIN_EXE_weekender"))
-        .env("DISPLAY", ":4711")
-        .env_remove("WAYLAND_DISPLAY")
-        .env("HOME", home.path())
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(2), "a display that does not answer");
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    let told = |display: Option<&str>| {
+        let mut command = Command::new(PROGRAM);
+        for name in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+            command.env_remove(name);
+        }
+        command.env("HOME", home.path()).envs(display.map(|display| ("DISPLAY", display)));
+        let (code, _, told) = outcome(&command.output().unwrap());
+        assert!(code == Some(2) && told.contains("--batch"), "{told}");
+        told
+    };
+    assert!(told(None).contains("no display"));
     // A system without a display may lack its libraries, too.
-    let is_named = told.contains(":4711 does not answer") || told.contains("a window needs lib");
-    assert!(is_named && told.contains("--batch"), "{told}");
+    let told = told(Some(":4711"));
+    assert!(told.contains(":4711 does not answer") || told.contains("a window needs lib"), "{told}");
 }
 
 /// As with `ssh -X`, and with a factor that no window fits.
 #[test]
 fn unusable_display_is_refused_with_a_message() {
     let home = tempfile::tempdir().unwrap();
-    let Some(display) = Display::with(&["-extension", "RANDR"]) else { return };
+    let Some(display) = Display::start(&["-extension", "RANDR"]) else { return };
     let refused = |command: &mut Command| {
         let output = command.output().unwrap();
         let told = String::from_utf8_lossy(&output.stderr).into_owned();

@@ -7,7 +7,6 @@ use crate::job::output::Encoding;
 use crate::kernel::sampling::pcg4d;
 use crate::numbers::statistics::blocks::CHANCE;
 use crate::numbers::statistics::normal::largest_of;
-use crate::stages::Transfer;
 
 const PIXELS: usize = 80 * 48;
 
@@ -251,30 +250,6 @@ fn difference_is_relative_to_both_steps() {
     );
 }
 
-#[test]
-fn fewer_levels_do_not_differ() {
-    let directory = tempfile::tempdir().unwrap();
-    let read = |most: u32, is_rounded: bool, brighter: f64| {
-        let mut file = format!("P6 64 64 {most} ").into_bytes();
-        for pixel in 0..64 * 64 {
-            let value = 0.2 + 0.4 * f64::from(pixel % 64) / 64.0 + brighter;
-            let most = f64::from(most);
-            let stored = if is_rounded { (most * value).round() } else { ((most + 1.0) * value).floor() };
-            file.extend([stored as u8; 3]);
-        }
-        let path = directory.path().join("a.ppm");
-        std::fs::write(&path, file).unwrap();
-        Picture::read(&path, Some(Encoding::Book(Transfer::Gamma2))).unwrap()
-    };
-    let fine = read(255, false, 0.0);
-    for (most, is_rounded) in [(31, false), (15, true), (100, true)] {
-        for found in both_ways(&fine, &read(most, is_rounded, 0.0)) {
-            assert!(found.is_equal(), "{most}, {is_rounded}: {:?} {:?}", found.reasons, found.unclear);
-        }
-        assert!(!compare(&fine, &read(most, is_rounded, 0.3)).is_equal(), "{most}, {is_rounded}");
-    }
-}
-
 /// Compares a picture with a copy changed at some columns and rows.
 fn changed(is_changed: impl Fn(u32, u32) -> bool, by: f64) -> Comparison {
     let value = |pixel: u32| 0.3 + 0.2 * random(pixel, 0, 1);
@@ -331,18 +306,12 @@ fn mistakes_of_a_file_are_hinted_at() {
     });
     let mut coloured = right.clone();
     coloured.pixels.iter_mut().for_each(|pixel| pixel[2] *= 0.3);
-    let at = |picture: &Picture, x: usize, y: usize| picture.pixels[y.min(47) * 80 + x.min(79)];
+    let with = |pixels: Vec<[f64; 3]>| Picture { pixels, ..coloured.clone() };
     let moved = |to: fn(usize, usize) -> (usize, usize)| {
-        let pixels = (0..PIXELS).map(|pixel| {
-            let (x, y) = to(pixel % 80, pixel / 80);
-            at(&coloured, x, y)
-        });
-        Picture { pixels: pixels.collect(), ..coloured.clone() }
+        let places = (0..PIXELS).map(|pixel| to(pixel % 80, pixel / 80));
+        with(places.map(|(x, y)| coloured.pixels[y.min(47) * 80 + x.min(79)]).collect())
     };
-    let changed = |change: fn(f64) -> f64| {
-        let pixels = coloured.pixels.iter().map(|pixel| pixel.map(change));
-        Picture { pixels: pixels.collect(), ..coloured.clone() }
-    };
+    let changed = |change: fn(f64) -> f64| with(coloured.pixels.iter().map(|p| p.map(change)).collect());
     let swapped = coloured.pixels.iter().map(|[red, green, blue]| [*blue, *green, *red]).collect();
     for (second, part) in [
         (moved(|x, y| (x, 47 - y)), "upside down"),
@@ -350,7 +319,7 @@ fn mistakes_of_a_file_are_hinted_at() {
         (moved(|x, y| (79 - x, 47 - y)), "180 degrees"),
         (moved(|x, y| (x + 1, y)), "to the right by a pixel"),
         (moved(|x, y| (x, y.saturating_sub(1))), "shifted up by a pixel"),
-        (Picture { pixels: swapped, ..coloured.clone() }, "red and blue"),
+        (with(swapped), "red and blue"),
         (changed(|x| 2.0 * x), "0.5000 times as bright"),
         (changed(f64::sqrt), "squared"),
         (changed(|x| x * x), "square roots"),

@@ -118,11 +118,6 @@ mod tests {
 
     #[test]
     fn scenes_are_found_by_name() {
-        for builtin in BuiltinScene::ALL {
-            let recipe = Recipe::builtin(builtin.name).expect("in the registry");
-            assert_eq!(recipe.name, builtin.name);
-            recipe.job().expect("valid");
-        }
         let field = Recipe::builtin("field:123").expect("a field");
         assert_eq!((field.name.as_str(), field.scene.spheres.len()), ("field:123", 124));
         assert_eq!(field.settings, Recipe::builtin("field").expect("a field").settings);

@@ -374,4 +374,4 @@ pub trait Renderer: Send {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -2,8 +2,55 @@
 
 use super::*;
 use crate::scene::Material;
-use crate::stages::Diffuse;
 use glam::DVec3;
+
+type Pass = dyn FnMut(&RenderJob, Range<u64>, &mut Film, &mut Vec<String>) -> Result<(), RenderError> + Send;
+
+/// A renderer whose passes are a closure, which may leave messages.
+pub(crate) struct Scripted(Box<Pass>, Vec<String>);
+
+impl Scripted {
+    pub(crate) fn new<P>(pass: P) -> Box<dyn Renderer>
+    where
+        P: FnMut(&RenderJob, Range<u64>, &mut Film, &mut Vec<String>) -> Result<(), RenderError>
+            + Send
+            + 'static,
+    {
+        Box::new(Scripted(Box::new(pass), Vec::new()))
+    }
+}
+
+impl Renderer for Scripted {
+    fn info(&self) -> BackendInfo {
+        BackendInfo { name: "scripted", device: String::new(), lanes: 1, threads: 1 }
+    }
+
+    fn take_messages(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.1)
+    }
+
+    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+        Ok(())
+    }
+
+    fn advance(
+        &mut self,
+        job: &RenderJob,
+        samples: Range<u64>,
+        film: &mut Film,
+        _: &Control,
+    ) -> Result<Outcome, RenderError> {
+        (self.0)(job, samples, film, &mut self.1)?;
+        Ok(Stats::default().into())
+    }
+}
+
+/// The job of a built-in scene in this size.
+pub(crate) fn sized(scene: &str, [width, height]: [u32; 2]) -> RenderJob {
+    let recipe = crate::job::recipe::Recipe::find(scene).unwrap();
+    let settings = RenderSettings { width, height, ..recipe.settings };
+    RenderJob::new(recipe.scene, recipe.camera, settings, recipe.rules).unwrap()
+}
 
 /// A job without spheres.
 fn job(width: u32, height: u32, max_depth: u32) -> Result<RenderJob, JobError> {
@@ -35,20 +82,6 @@ fn pictures_may_reach_the_limits() {
 }
 
 #[test]
-fn views_share_a_scene_but_copies_do_not() {
-    let job = job(4, 3, 2).unwrap();
-    let camera = Camera { vfov_degrees: 30.0, ..Camera::BOOK };
-    let seen = job.seen_by(camera, *job.settings()).unwrap();
-    assert!(seen.shares_scene_with(&job) && seen != job);
-    assert_eq!((seen.camera(), seen.settings(), seen.rules()), (&camera, job.settings(), job.rules()));
-    let of = |scene: Arc<Scene>, rules| RenderJob::new(scene, Camera::BOOK, *job.settings(), rules).unwrap();
-    let copy = of(Arc::new(job.scene().clone()), Rules::FINISHED);
-    assert!(copy == job && !copy.shares_scene_with(&job));
-    let rules = Rules { diffuse: Diffuse::Hemisphere, ..Rules::FINISHED };
-    assert!(!of(Arc::clone(&job.scene), rules).shares_scene_with(&job), "other rules");
-}
-
-#[test]
 fn memory_check_counts_films_file_and_spheres() {
     if memory::room().is_none() {
         return;
@@ -67,13 +100,6 @@ fn memory_check_counts_films_file_and_spheres() {
     let error = job.check_memory(FILMS, 0).unwrap_err();
     assert_eq!(error.needed_bytes, pixels * (48 * FILMS + 4) + 3 * 400 + (64 << 20));
     assert_eq!(error.what, "a picture of 16384x16383 of 3 spheres");
-}
-
-#[test]
-fn the_message_of_a_panic_is_kept() {
-    assert_eq!([panic_text(&"why"), panic_text(&String::from("how"))], ["why", "how"]);
-    let message = RenderError::of_panic("gpu", &7).to_string();
-    assert_eq!(message, "gpu failed: it panicked: for no stated reason");
 }
 
 #[test]

@@ -47,6 +47,7 @@ fn named_values(job: &RenderJob) -> Vec<(String, Value)> {
 mod tests {
     use super::*;
     use crate::job::recipe::Recipe;
+    use crate::stages::{SurfaceRule, Transfer};
     use std::sync::Arc;
 
     #[test]
@@ -57,12 +58,20 @@ mod tests {
             change(&mut other);
             difference(&recipe.job().unwrap(), &other.job().unwrap())
         };
-        assert_eq!(difference_with(|_| {}), None);
+        assert_eq!(difference_with(|recipe| recipe.samples_per_pixel += 1), None);
         // Zeros are equal whatever their signs.
         assert_eq!(difference_with(|recipe| recipe.camera.look_from.x = -0.0), None);
         type Change = fn(&mut Recipe);
-        let cases: [(Change, &str); 8] = [
+        let sky = "the spheres, materials or sky differ";
+        let cases: [(Change, &str); 12] = [
             (|recipe| recipe.settings.width = 7, "width is 800 here, 7 there"),
+            (|recipe| recipe.settings.max_depth = 7, "max_depth is 50 here, 7 there"),
+            (|recipe| recipe.rules.surface = SurfaceRule::Book, "surface is \"exact\" here, \"book\" there"),
+            (
+                |recipe| recipe.rules.transfer = Transfer::Linear,
+                "transfer is \"gamma2\" here, \"linear\" there",
+            ),
+            (|recipe| Arc::make_mut(&mut recipe.scene).sky.top *= 0.5, sky),
             (|recipe| recipe.settings.seed = 5, "seed is 0 here, 5 there"),
             (|recipe| recipe.camera.vfov_degrees = 20.0, "vfov_degrees is 90.0 here, 20.0 there"),
             (
@@ -75,10 +84,7 @@ mod tests {
                 |recipe| Arc::make_mut(&mut recipe.scene).spheres.truncate(4),
                 "number of spheres is 5 here, 4 there",
             ),
-            (
-                |recipe| Arc::make_mut(&mut recipe.scene).spheres[0].radius *= 0.5,
-                "the spheres, materials or sky differ",
-            ),
+            (|recipe| Arc::make_mut(&mut recipe.scene).spheres[0].radius *= 0.5, sky),
         ];
         for (change, expected) in cases {
             assert_eq!(difference_with(change).as_deref(), Some(expected));

@@ -149,7 +149,6 @@ impl SceneFigures {
 mod tests {
     use super::*;
     use crate::backends::BackendChoice;
-    use crate::job::recipe::Recipe;
 
     fn row(kind: Kind, runs: Vec<Run>) -> Row {
         let choice = BackendChoice::Reference { threads: Some(1) };
@@ -157,24 +156,6 @@ mod tests {
         row.runs = runs;
         row.sum_up();
         row
-    }
-
-    #[test]
-    fn ratio_is_to_the_first_row() {
-        let run =
-            |paths| Run { seconds: 2.0, paths, rays: 7 * paths, busy_lanes: 0, offered_lanes: 0, rmse: None };
-        let job = Recipe::builtin("metals").unwrap().job().unwrap();
-        let ratios = |rows: Vec<Row>| -> Vec<Option<f64>> {
-            SceneFigures::new("metals", &job, rows).rows.iter().map(|row| row.ratio_to_baseline).collect()
-        };
-        let first = vec![
-            row(Kind::Baseline, vec![run(20), run(10), run(90)]),
-            row(Kind::Packets, vec![run(80), run(60), run(90)]),
-            row(Kind::Gpu, Vec::new()),
-        ];
-        assert_eq!(ratios(first), [Some(1.0), Some(4.0), None]);
-        let without = vec![row(Kind::Baseline, Vec::new()), row(Kind::Packets, vec![run(80)])];
-        assert_eq!(ratios(without), [None, None]);
     }
 
     #[test]

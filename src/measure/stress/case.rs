@@ -308,43 +308,13 @@ mod tests {
         let ids: HashSet<&str> = cases().iter().map(|case| case.id.as_str()).collect();
         assert_eq!(ids.len(), cases().len());
         for case in cases() {
-            let forms = case.forms().into_iter().chain(case.twin.clone().map(|twin| ("twin", twin)));
-            for (form, recipe) in forms {
-                assert!(recipe.job().is_ok(), "{} {form}: {:?}", case.id, recipe.job().err());
+            for recipe in case.forms().into_iter().map(|(_, recipe)| recipe).chain(case.twin.clone()) {
+                assert!(recipe.job().is_ok(), "{}: {:?}", case.id, recipe.job().err());
             }
             let is_small = case.recipe.scene.spheres.len() < HIERARCHY_SPHERES;
             assert_eq!(case.forms().len(), 1 + usize::from(is_small), "{}", case.id);
         }
         let shown: Vec<&Case> = cases().iter().filter(|case| case.claim.title.is_some()).collect();
-        assert_eq!(shown.len(), shown_cases().len());
         assert!(shown.iter().all(|case| !case.claim.look_for.is_empty() && !case.family.lesson.is_empty()));
-    }
-
-    #[test]
-    fn entries_build_on_others() {
-        let find = |id: &str| cases().iter().find(|case| case.id == id).unwrap();
-        let shells = &find("shells/50").recipe.scene.spheres;
-        assert_eq!((shells.len(), shells[0].radius, shells[49].radius), (50, 1.0, 1.0 - 0.9 * 49.0 / 50.0));
-        let [first, second] = find("shifts/1e-3-x").recipe.scene.spheres[..] else { panic!() };
-        assert_eq!(second.center - first.center, DVec3::X * 1e-3);
-        let (tame, moved) = (find("scaled/1e3").twin.as_ref().unwrap(), &find("scaled/1e3").recipe);
-        assert_eq!(moved.camera.look_from, 1000.0 * tame.camera.look_from);
-        assert_eq!(moved.scene.materials, tame.scene.materials);
-        assert_eq!(find("odd/huge").recipe.scene.spheres.len(), 4002);
-        assert_eq!(find("cavity/white-alone").recipe.scene.materials.len(), 1, "only those in use");
-        assert_eq!(find("file/nested").recipe.settings.width, 24);
-    }
-
-    #[test]
-    fn far_spheres_are_invisible() {
-        let recipe = Recipe::builtin("two-spheres").unwrap();
-        let with = with_far_spheres(&recipe, 2.0);
-        let added = &with.scene.spheres[recipe.scene.spheres.len()..];
-        assert_eq!(added.len(), FAR_COUNT);
-        let eye = recipe.camera.look_from;
-        let mean = added.iter().map(|s| s.center - eye).sum::<DVec3>() / FAR_COUNT as f64;
-        assert!(mean.length() < 0.05 * FAR_DISTANCE * 2.0, "{mean}");
-        let share: f64 = added.iter().map(|s| (s.radius / s.center.distance(eye)).powi(2) / 4.0).sum();
-        assert!(share < 2e-9, "{share}");
     }
 }

@@ -1,7 +1,7 @@
 //! Tests of the renderer on the CPU.
 
 use super::*;
-use crate::job::recipe::Recipe;
+use crate::job::render::tests::sized;
 #[cfg(target_os = "linux")]
 use crate::render_cpu::priority::NICENESS;
 use crate::scene::{Material, Sphere};
@@ -9,9 +9,7 @@ use glam::DVec3;
 use std::sync::atomic::AtomicUsize;
 
 fn small(scene: &str) -> RenderJob {
-    let mut recipe = Recipe::find(scene).expect("a built-in scene");
-    (recipe.settings.width, recipe.settings.height) = (20, 12);
-    recipe.job().expect("valid")
+    sized(scene, [20, 12])
 }
 
 fn film(renderer: &mut CpuRenderer, job: &RenderJob) -> Film {
@@ -56,9 +54,7 @@ fn sample_time_is_estimated_for_a_prepared_job() {
 
 #[test]
 fn stopped_pass_is_whole_or_withdrawn() {
-    let mut recipe = Recipe::find("three-spheres").expect("a built-in scene");
-    (recipe.settings.width, recipe.settings.height) = (256, 144);
-    let (job, never) = (recipe.job().expect("valid"), AtomicBool::new(false));
+    let (job, never) = (sized("three-spheres", [256, 144]), AtomicBool::new(false));
     let mut renderer =
         CpuRenderer::new(CpuOptions { threads: Some(2), ..CpuOptions::default() }).expect("available");
     let mut held = job.new_film();
@@ -86,9 +82,7 @@ fn stopped_pass_is_whole_or_withdrawn() {
 /// The tracer panics in the middle of a tile.
 #[test]
 fn panic_in_a_tile_leaves_the_film_unchanged() {
-    let mut recipe = Recipe::find("three-spheres").expect("a built-in scene");
-    (recipe.settings.width, recipe.settings.height) = (100, 70);
-    let (job, never) = (recipe.job().expect("valid"), AtomicBool::new(false));
+    let (job, never) = (sized("three-spheres", [100, 70]), AtomicBool::new(false));
     let mut renderer = CpuRenderer::new(CpuOptions::default()).expect("available");
     let mut film = job.new_film();
     renderer.accumulate(&job, 0..6, &mut film, &never).expect("traced");

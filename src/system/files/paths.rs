@@ -114,16 +114,13 @@ mod tests {
 
     #[test]
     fn shown_paths_are_one_line_without_control_characters() {
-        assert_eq!(Path::new("a\nb\u{1b}[31m\u{202e}c.png").shown(), "a\\nb\\u{1b}[31m\\u{202e}c.png");
-        assert_eq!(Path::new("Köln/it's a.png").shown(), "Köln/it's a.png");
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn non_unicode_bytes_are_replaced_in_messages() {
-        use std::os::unix::ffi::OsStrExt;
-        let path = PathBuf::from(OsStr::from_bytes(b"d\xff/a\n.png"));
-        assert_eq!(path.shown(), "d\u{fffd}/a\\n.png");
+        assert_eq!(Path::new("Köln/a\nb\u{1b}[31m.png").shown(), "Köln/a\\nb\\u{1b}[31m.png");
+        #[cfg(unix)]
+        {
+            use std::os::unix::ffi::OsStrExt;
+            let path = Path::new(OsStr::from_bytes(b"d\xff/a\n.png"));
+            assert_eq!(path.shown(), "d\u{fffd}/a\\n.png");
+        }
     }
 
     #[test]
@@ -142,23 +139,6 @@ mod tests {
 
     fn same(a: &Path, b: &Path) -> bool {
         identity(a).unwrap() == identity(b).unwrap()
-    }
-
-    #[test]
-    fn one_file_by_many_names() {
-        let directory = tempfile::tempdir().unwrap();
-        let at = |name: &str| directory.path().join(name);
-        fs::create_dir(at("d")).unwrap();
-        for is_there in [false, true] {
-            assert!(same(&at("new"), &at("./d/../new")) && same(&at("d/x"), &at("d/./x")));
-            assert!(same(&at("gone/deeper/x"), &at("./gone/deeper/x")));
-            assert!(
-                !same(&at("new"), &at("other")) && !same(&at("d/x"), &at("x")) && !same(&at("new"), &at("d"))
-            );
-            if !is_there {
-                fs::write(at("new"), "").unwrap();
-            }
-        }
     }
 
     #[cfg(unix)]

@@ -126,16 +126,6 @@ mod tests {
     }
 
     #[test]
-    fn filter_by_module_and_level() {
-        let filter = filter_of(FILTER_OF_FILE).unwrap();
-        let is_on = |level, target| filter.enabled(&metadata(level, target));
-        assert!(is_on(Level::Debug, "weekender::render_gpu") && is_on(Level::Warn, "wgpu_core"));
-        assert!(!is_on(Level::Trace, "weekender::render_gpu") && !is_on(Level::Info, "wgpu_core"));
-        let message = filter_of("weekender=loud").err().unwrap().to_string();
-        assert!(message.contains("weekender=loud") && message.contains("levels are error"), "{message}");
-    }
-
-    #[test]
     fn own_steps_and_foreign_warnings_are_kept_for_a_report() {
         let kept = |level, target| is_kept(&metadata(level, target));
         assert!(kept(Level::Info, "weekender::backends") && kept(Level::Warn, "wgpu_hal"));

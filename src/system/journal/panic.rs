@@ -90,20 +90,3 @@ fn note(panic: &PanicHookInfo<'_>) {
     }
     *LATEST.lock().unwrap_or_else(PoisonError::into_inner) = Some(whole);
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_report_says_what_ran_and_what_happened() {
-        let text = report("weekender 1.2 (abc)", "weekender --batch", "it broke", "0.1 s INFO adapter X");
-        for part in [
-            "\n\nversion    weekender 1.2 (abc)\ncommand    weekender --batch\ndirectory  ",
-            "\n\nit broke\n\nLog (seconds since the start):\n0.1 s INFO adapter X\n",
-        ] {
-            assert!(text.contains(part), "{part} in {text}");
-        }
-        assert!(report("", "", "", "").ends_with("(empty)\n"));
-    }
-}

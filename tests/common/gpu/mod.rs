@@ -7,9 +7,8 @@ pub use crate::common::skip::skip;
 use std::cell::RefCell;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use weekender::film::Film;
 use weekender::job::recipe::Recipe;
-use weekender::job::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
+use weekender::job::render::{RenderJob, RenderSettings, SamplerKind};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
 use weekender::render_gpu::{GpuError, GpuOptions, GpuRenderer};
 use weekender::scene::builtin::BuiltinScene;
@@ -64,27 +63,6 @@ pub fn go_on() -> AtomicBool {
     AtomicBool::new(false)
 }
 
-/// A film of this many samples, none of them rejected.
-pub fn rendered(renderer: &mut dyn Renderer, job: &RenderJob, samples: u64) -> Film {
-    let mut film = job.new_film();
-    let stats = renderer.accumulate(job, 0..samples, &mut film, &go_on()).unwrap();
-    assert_eq!(stats.rejected, 0);
-    assert_eq!(film.sample_count(), samples);
-    film
-}
-
-/// Number of pixels with a channel in which two films differ by more than `by`.
-pub fn parted(a: &Film, b: &Film, by: f32) -> usize {
-    let pairs = a.means().into_iter().zip(b.means());
-    pairs.filter(|(a, b)| a.iter().zip(b).any(|(a, b)| (a - b).abs() > by)).count()
-}
-
-/// The mean of all pixels and channels.
-pub fn picture_mean(film: &Film) -> f64 {
-    let means = film.means();
-    means.iter().flatten().map(|x| f64::from(*x)).sum::<f64>() / (3.0 * means.len() as f64)
-}
-
 /// The CPU renderer to compare with.
 pub fn cpu() -> CpuRenderer {
     CpuRenderer::new(CpuOptions::default()).unwrap()
@@ -99,6 +77,12 @@ pub fn job_of(
 ) -> RenderJob {
     let settings = RenderSettings { width, height, max_depth, sampler, seed: 3 };
     RenderJob::new(scene.clone(), camera, settings, Rules::default()).unwrap()
+}
+
+/// The book's three spheres.
+pub fn three_spheres(size: [u32; 2], max_depth: u32) -> RenderJob {
+    let (scene, camera) = (BuiltinScene::ALL[0].build)();
+    job_of(&scene, camera, size, max_depth, SamplerKind::Sobol)
 }
 
 /// All stages and all built-in scenes.

@@ -69,9 +69,17 @@ fn film_with_noise_in(pixels: u32, noisy: usize) -> Film {
 
 #[test]
 fn estimates_dominated_by_few_pixels_are_doubted() {
-    for (pixels, noisy, is_doubted) in
-        [(1000, 50, true), (1000, 1000, false), (1000, 300, false), (150, 50, false), (150, 5, true)]
-    {
+    // One of few pixels, too.
+    for (pixels, noisy, is_doubted) in [
+        (1000, 50, true),
+        (1000, 1000, false),
+        (1000, 300, false),
+        (150, 50, false),
+        (150, 5, true),
+        (67, 67, false),
+        (66, 66, true),
+        (12, 12, true),
+    ] {
         let film = film_with_noise_in(pixels, noisy);
         let doubt = film.doubt(&film.error().unwrap());
         assert_eq!(doubt.is_some(), is_doubted, "{noisy} of {pixels}: {doubt:?}");

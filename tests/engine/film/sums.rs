@@ -7,16 +7,6 @@ use weekender::film::{
 use weekender::stages::Transfer;
 
 #[test]
-fn the_order_of_samples_does_not_matter() {
-    let forward = noisy_film(5, 3, &[0..100, 100..128]);
-    let backward = noisy_film(5, 3, &[100..128, 7..100, 0..7]);
-    assert_eq!(forward, backward);
-    let mut merged = noisy_film(5, 3, &[3..90]);
-    merged.merge(&noisy_film(5, 3, &[90..128, 0..3])).unwrap();
-    assert_eq!(forward, merged);
-}
-
-#[test]
 fn invalid_radiance_is_rejected_and_the_picture_stays_finite() {
     let mut film = Film::new(1, 1);
     let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1e-30];

@@ -66,7 +66,8 @@ fn case_12_single_against_double() {
     let scene = three_spheres(LeftSphere::HollowGlass);
     let job = job(&scene, Camera::BOOK, RenderSettings { max_depth: 24, ..size(160, 90) });
     for (name, mut renderer) in [("widest", widest()), ("portable", portable())] {
-        let paired = paired(&job, 256, &mut renderer, &mut reference());
+        let indices: Vec<u64> = (0..256).collect();
+        let paired = paired(&job, &indices, &mut renderer, &mut reference());
         println!("case 12 {name}: {paired:?}");
         assert!(paired.bias.abs() <= 2e-6, "{name}: {paired:?}");
         assert!(paired.outliers <= 1e-4, "{name}: {paired:?}");

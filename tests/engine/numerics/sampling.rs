@@ -30,13 +30,6 @@ pub fn numbers(settings: &RenderSettings, pixel: u32, index: u32, bounce: u32) -
     }
 }
 
-/// A uniform point in the unit disk, in polar coordinates.
-pub fn unit_disk(u0: f32, u1: f32) -> [f32; 2] {
-    let (sine, cosine) = sin_cos_turns(u1);
-    let radius = u0.sqrt();
-    [radius * cosine, radius * sine]
-}
-
 #[test]
 fn case_26_no_draw_repeats() {
     for sampler in SamplerKind::ALL {
@@ -68,7 +61,6 @@ fn independent_samples_are_independent() {
                 squares_of_means += values.sum::<f64>().powi(2);
             }
             let ratio = squares_of_means / squares;
-            println!("number {which}, {turns} turns: variance of the mean {ratio:.3} of the expected");
             // The deviation is the root of 2 / PIXELS, 0.01.
             assert!((ratio - 1.0).abs() < 0.05, "number {which}, {turns} turns: {ratio}");
         }
@@ -163,9 +155,6 @@ fn numbers_of_a_path_are_unrelated() {
         }
         let (bits, largest) = counts.iter().enumerate().skip(1).max_by_key(|(_, sum)| sum.abs()).unwrap();
         let deviations = f64::from(largest.abs()) / f64::from(DRAWS).sqrt();
-        println!(
-            "{sampler:?}: the largest sum, of the bits {bits:024b}, is {deviations:.2} deviations from 0"
-        );
         assert!(deviations < 7.0, "{sampler:?}: {bits:024b} {deviations}");
     }
 }
@@ -193,7 +182,6 @@ fn first_rays_are_evenly_distributed_together() {
             }
         }
         let share = reached as f64 / f64::from(boxes);
-        println!("pairs {first} and {other}: {share:.3}");
         assert!(share > 0.66, "pairs {first} and {other}: {share}");
     }
 }
@@ -248,22 +236,8 @@ fn sine_and_cosine_of_turns() {
         let reference = Reference.sin_cos_turns(Double(f64::from(u)));
         assert!((reference.0.0 - exact.0).abs() < 1e-15 && (reference.1.0 - exact.1).abs() < 1e-15);
     }
-    println!("sine and cosine: {largest:.2e}, length {length:.2e}");
     assert!(largest <= 2e-7, "{largest:e}");
     assert!(length <= 2e-7, "{length:e}");
-}
-
-#[test]
-fn unit_vectors_have_length_1() {
-    let mut random = Random::new(10);
-    for _ in 0..100_000 {
-        let [u0, u1] =
-            [random.bits(), random.bits()].map(|bits| crate::common::oracle::unit_float(bits as u32));
-        let [x, y, z] = crate::common::oracle::unit_sphere(u0, u1).map(f64::from);
-        assert!(((x * x + y * y + z * z).sqrt() - 1.0).abs() < 1e-6, "{u0}, {u1}");
-        let [x, y] = unit_disk(u0, u1).map(f64::from);
-        assert!(x.hypot(y) < 1.0 + 1e-6, "{u0}, {u1}");
-    }
 }
 
 proptest! {

@@ -1,5 +1,6 @@
 //! Samplers and error estimates: cases 28 to 30.
 
+use crate::common::films::squared_error;
 use crate::numerics::common::*;
 use glam::DVec3;
 use std::sync::OnceLock;
@@ -13,7 +14,6 @@ use weekender::scene::builtin::{LeftSphere, three_spheres};
 
 const WIDTH: u32 = 48;
 const HEIGHT: u32 = 27;
-const VALUES: usize = (WIDTH * HEIGHT * 3) as usize;
 
 fn three(width: u32, height: u32, sampler: SamplerKind, seed: u32) -> RenderJob {
     let settings = RenderSettings { sampler, seed, max_depth: 24, ..size(width, height) };
@@ -24,17 +24,6 @@ fn three(width: u32, height: u32, sampler: SamplerKind, seed: u32) -> RenderJob 
 fn truth() -> &'static Film {
     static TRUTH: OnceLock<Film> = OnceLock::new();
     TRUTH.get_or_init(|| render(&mut widest(), &three(WIDTH, HEIGHT, SamplerKind::Sobol, 4242), 0..65_536))
-}
-
-/// Mean squared error against the truth, minus the truth's own error.
-fn squared_error(film: &Film, truth: &Film) -> f64 {
-    let sum: f64 = (0..(WIDTH * HEIGHT) as usize)
-        .flat_map(|pixel| {
-            let (x, expected) = (film.mean(pixel), truth.mean(pixel));
-            [0, 1, 2].map(|channel| (x[channel] - expected[channel]).powi(2))
-        })
-        .sum();
-    sum / VALUES as f64 - truth.error().unwrap().rmse.powi(2)
 }
 
 #[test]

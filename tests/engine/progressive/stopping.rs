@@ -20,16 +20,6 @@ fn samples_of_history(status: &Status) -> Vec<u64> {
 }
 
 #[test]
-fn a_plan_of_samples_is_met_exactly() {
-    let progressive = started(CPU, Plan::samples(200));
-    let status = progressive.wait_until_over();
-    assert_eq!(status.phase, Phase::Done(EndReason::Samples));
-    assert_eq!((status.samples_per_pixel, status.stats.paths), (200, 800));
-    assert_eq!(samples_of_history(&status), [2, 4, 8, 16, 32, 64, 128]);
-    assert_eq!(progressive.take_film(), Some(expected(200)));
-}
-
-#[test]
 fn unwatched_first_pass_has_full_length() {
     /// The samples in the film at the end of each pass that reaches another power of two.
     fn history(trial: Option<[u64; 2]>, plan: Plan) -> Vec<u64> {
@@ -186,17 +176,6 @@ fn a_stop_during_the_first_pass_leaves_the_fewest_samples() {
     has_begun.recv_timeout(PATIENCE).unwrap();
     let status = stopped(progressive);
     assert_eq!((has_ended.recv_timeout(PATIENCE), status.samples_per_pixel), (Ok(true), 2));
-}
-
-#[test]
-fn a_new_job_takes_over_in_the_middle_of_a_pass() {
-    let mut progressive = idle(|_| Box::new(Fake { pause: Duration::from_millis(1), ..Fake::new("cpu") }));
-    progressive.start(RenderRequest::new(job(7), CPU, Plan { pass_target: PATIENCE, ..Plan::endless() }));
-    wait_for(&progressive, 16);
-    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(4)));
-    let status = progressive.wait_until_over();
-    assert_eq!((status.run, status.samples_per_pixel), (2, 4));
-    assert_eq!(progressive.take_film(), Some(expected(4)));
 }
 
 /// Reports that it begins, waits until it is cancelled, and reports whether it was.

@@ -4,7 +4,7 @@ use super::common::{CAMERA, assert_round_trip};
 use std::path::Path;
 use std::sync::Arc;
 use weekender::job::recipe::Recipe;
-use weekender::job::recipe::file::{load, parse, to_picture_toml};
+use weekender::job::recipe::file::{load, parse, to_picture_toml, to_toml};
 use weekender::scene::builtin::BuiltinScene;
 use weekender::stages::{Rules, Stage};
 
@@ -45,6 +45,8 @@ fn a_picture_names_a_large_field_and_restores_it() {
     Arc::make_mut(&mut changed.scene).spheres[3].radius = 0.25;
     assert_eq!(parse(&to_picture_toml(&changed), "field:20000").expect("valid"), changed);
     assert!(to_picture_toml(&changed).len() > 500_000);
+    let small = Recipe::builtin("field:500").expect("a field");
+    assert_eq!(to_picture_toml(&small), to_toml(&small), "it needs no name");
 
     let message = |text: &str| parse(text, "x").expect_err("refused").to_string();
     let mark = text.lines().nth(1).expect("a mark");

@@ -46,19 +46,6 @@ pub(super) fn mark(scene: &Scene) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::builtin::field;
-    use crate::stages::Stage;
-
-    #[test]
-    fn only_large_unchanged_fields_are_named() {
-        let mut scene = field(20_000).0;
-        assert_eq!(name_of(&scene).as_deref(), Some("field:20000"));
-        scene.spheres[19_999].radius += 1e-4;
-        assert_eq!(name_of(&scene), None);
-        assert_eq!(name_of(&field(500).0), None);
-        assert_eq!(name_of(&Stage::ALL[0].recipe().scene), None);
-        assert_eq!(name_of(&Scene::default()), None);
-    }
 
     #[test]
     fn any_change_changes_the_mark() {

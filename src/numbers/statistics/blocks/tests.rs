@@ -22,8 +22,12 @@ fn noise(width: u32, height: u32, seed: u32) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
         .unzip()
 }
 
+fn differences<'a>(width: u32, values: &'a [[f64; 3]], noise: Noise<'a>) -> Differences<'a> {
+    Differences { width, values, noise, steps: None, tolerance: 0.0, rare: 0.0 }
+}
+
 fn test(width: u32, values: &[[f64; 3]], noise: Noise) -> BlockTest {
-    BlockTest::of(&Differences { width, values, noise, steps: None, tolerance: 0.0, rare: 0.0 })
+    BlockTest::of(&differences(width, values, noise))
 }
 
 #[test]
@@ -64,7 +68,7 @@ fn steps_and_tolerance_excuse_differences() {
     let none = vec![[0.0; 3]; 64 * 64];
     let with = |steps, tolerance| {
         let noise = Noise::Variances(&none);
-        BlockTest::of(&Differences { width: 64, values: &shifted, noise, steps, tolerance, rare: 0.0 })
+        BlockTest::of(&Differences { steps, tolerance, ..differences(64, &shifted, noise) })
     };
     assert!(!with(None, 0.0).is_within());
     assert!(with(None, 0.005).is_within());
@@ -83,8 +87,7 @@ fn known_variance_has_infinite_freedom() {
     let of = |tolerance: f64, deviations: f64| {
         let total = (1.0 + tolerance * tolerance).sqrt();
         let values = vec![[deviations * total; 3]; 64];
-        let noise = Noise::Variances(&variances);
-        BlockTest::of(&Differences { width: 8, values: &values, noise, steps: None, tolerance, rare: 0.0 })
+        BlockTest::of(&Differences { tolerance, ..differences(8, &values, Noise::Variances(&variances)) })
     };
     for (tolerance, quantile) in [(1.0, 2.7764), (2.0_f64.sqrt(), 2.2622)] {
         let z = of(tolerance, quantile).blocks[0].z;
@@ -97,10 +100,8 @@ fn rare_path_in_both_halves_is_ignored() {
     let none = vec![[0.0; 3]; 64];
     let mut values = none.clone();
     values[9] = [-1.0 / 32.0; 3];
-    let noise = Noise::Variances(&none);
-    let test = |rare| {
-        BlockTest::of(&Differences { width: 8, values: &values, noise, steps: None, tolerance: 2e-6, rare })
-    };
+    let of = differences(8, &values, Noise::Variances(&none));
+    let test = |rare| BlockTest::of(&Differences { tolerance: 2e-6, rare, ..of });
     assert!(!test(0.0).is_within());
     assert!(test(2.0 / 64.0).is_within());
 }
@@ -134,14 +135,8 @@ fn noiseless_difference_is_infinite() {
     assert_eq!((found.blocks[0].means, found.blocks[0].largest()), ([-0.5, 0.0, 0.5], f64::INFINITY));
     assert!(!found.is_within() && (0..3).all(|channel| found.blocks[0].is_known(channel)), "{found:?}");
     // A block of a single pixel has no spread, so only its known error counts.
-    let single = BlockTest::of(&Differences {
-        width: 1,
-        values: &[[2.0, -1.0, 0.0]],
-        noise: Noise::Spread,
-        steps: None,
-        tolerance: 0.5,
-        rare: 0.0,
-    });
+    let of = differences(1, &[[2.0, -1.0, 0.0]], Noise::Spread);
+    let single = BlockTest::of(&Differences { tolerance: 0.5, ..of });
     assert_eq!((single.blocks[0].z, single.counts), ([4.0, -2.0, 0.0], [1; 3]));
 }
 
