@@ -133,12 +133,12 @@ impl BenchOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{Request, parse};
+    use crate::cli::{Command, Request, parse};
 
     fn options(words: &str) -> BenchOptions {
         let line = format!("weekender bench --scene metals --isa portable --threads 1 {words}");
         match parse(line.split(' ').map(Into::into)).unwrap() {
-            Request::Bench(options) => *options,
+            Request::Command(Command::Bench(options)) => *options,
             other => panic!("{other:?}"),
         }
     }

@@ -155,12 +155,12 @@ impl ReportOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{Request, parse};
+    use crate::cli::{Command, Request, parse};
 
     fn parsed(words: &str) -> Result<ReportOptions, String> {
         let line = format!("weekender report --out r {words}");
         match parse(line.split(' ').map(Into::into)) {
-            Ok(Request::Report(options)) => Ok(*options),
+            Ok(Request::Command(Command::Report(options))) => Ok(*options),
             Ok(other) => panic!("{other:?}"),
             Err(failure) => Err(failure.to_string()),
         }
