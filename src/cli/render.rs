@@ -10,7 +10,7 @@ use crate::progressive::{NoiseOf, Plan, Stop};
 use crate::scene::animation::FRAME_LIMIT;
 use crate::system::files::{STANDARD, ShownPath};
 use crate::system::terminal::ProgressChoice;
-use anyhow::{Result, bail, ensure};
+use anyhow::{Result, anyhow, bail, ensure};
 use clap::Args;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -190,7 +190,7 @@ fn outputs(files: &FileFlags, default: Option<&str>) -> Result<Vec<Output>> {
                 path.shown()
             ),
             (Some(format), _) => format,
-            (None, named) => named?,
+            (None, named) => named.map_err(|error| anyhow!("{error}, or add --format"))?,
         };
         Ok(Output { path: path.clone(), format, is_checkpoint: false })
     };

@@ -16,9 +16,6 @@ use std::ffi::{OsStr, OsString};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// The default scene.
-const DEFAULT_SCENE: &str = "three-spheres";
-
 /// A parser of names. For an unknown one, clap suggests a similar one.
 #[derive(Clone)]
 pub(super) struct Names {
@@ -192,7 +189,7 @@ pub(super) fn find(flags: &PictureFlags, saved: Option<&Path>) -> Result<ChosenR
             let saved = open(path)?;
             Ok(ChosenRecipe { stage: saved.stage(), recipe: saved.recipe })
         }
-        (None, None, None) => Ok(ChosenRecipe { recipe: scene(DEFAULT_SCENE)?, stage: None }),
+        (None, None, None) => Ok(ChosenRecipe { recipe: scene("three-spheres")?, stage: None }),
     }
 }
 

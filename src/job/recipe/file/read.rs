@@ -87,6 +87,9 @@ fn read(source: &Source) -> Result<Recipe> {
         if has_decimal_comma(text, place.start) {
             reason += "; write a point in a number, not a comma";
         }
+        if text.trim_start().starts_with(['{', '<', '%', '\0']) {
+            reason += "; a scene file is TOML, as --save-scene FILE.toml writes it";
+        }
         source.refuse(place, reason)
     })?;
     source.recipe(raw)
@@ -108,6 +111,9 @@ fn toml_message(mut error: toml::de::Error) -> String {
         ("missing field", "missing key"),
         ("duplicate field", "duplicate key"),
         ("unknown variant", "unknown value"),
+        (" as i128", ""),
+        ("invalid type: map", "invalid type: table"),
+        ("expected a sequence", "expected a list"),
         ("expected i64", "expected a whole number"),
         ("expected f64", "expected a number"),
         ("\n", " "),

@@ -57,7 +57,9 @@ impl<'a> Table<'a> {
             )
         })?;
         let path = directory.join(&*value);
-        let mut text = text_of(&path, files::read(&path, "a table of spheres", LENGTH_LIMIT)?)?;
+        let read = files::read(&path, "a table of spheres", LENGTH_LIMIT).map_err(Into::into);
+        let text = read.and_then(|bytes| text_of(&path, bytes));
+        let mut text = text.map_err(|error| anyhow!("{name}:{line}: {error:#}"))?;
         if !text.contains('\n') {
             // Line ends of old Macintosh programs.
             text = text.replace('\r', "\n");
@@ -80,6 +82,12 @@ impl<'a> Table<'a> {
         let columns = columns_of(&cells.of(header)).map_err(|reason| at(line, reason))?;
         let mut coloured = HashMap::new();
         for (line, row) in lines {
+            if row.matches('"').count() % 2 == 1 {
+                return Err(at(
+                    line,
+                    format!("the row {row:?} has a quote that is not closed; close it or remove it"),
+                ));
+            }
             let sphere = sphere_of(&cells.of(row), &columns, scene, index_of, &mut coloured);
             scene.spheres.push(sphere.map_err(|reason| at(line, reason))?);
         }
@@ -97,9 +105,10 @@ fn sphere_of(
 ) -> Result<Sphere, String> {
     let (index, found, count) = (scene.spheres.len(), row.len(), columns.iter().flatten().count());
     if found != count {
+        let more = if found == MOST_VALUES { " or more" } else { "" };
         return Err(format!(
-            "spheres[{index}] should have {count} values, one for each column, and has {found}; separate the values by \
-             commas, and write a point in a number"
+            "spheres[{index}] should have {count} values, one for each column, and has {found}{more}; separate the \
+             values by commas, and write a point in a number"
         ));
     }
     let texts = columns.map(|column| row.get(column?).copied());
@@ -152,13 +161,16 @@ pub(super) fn added_material(
 struct Cells {
     reader: csv_core::Reader,
     text: Vec<u8>,
-    /// Where each value ends in the text. More than these no table has.
-    ends: [usize; 32],
+    /// Where each value ends in the text.
+    ends: [usize; MOST_VALUES],
 }
+
+/// More values a row never has.
+const MOST_VALUES: usize = 32;
 
 impl Cells {
     fn new() -> Self {
-        Cells { reader: csv_core::Reader::new(), text: Vec::new(), ends: [0; 32] }
+        Cells { reader: csv_core::Reader::new(), text: Vec::new(), ends: [0; MOST_VALUES] }
     }
 
     /// The values of a row.
