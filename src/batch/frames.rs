@@ -199,10 +199,11 @@ impl<'a> Run<'a> {
             none => none.insert(Studio::open(&self.options.picture.backend, self.interrupt)?),
         };
         let (begin, done, count) = (Instant::now(), self.done.len(), self.options.frames.len());
-        let frames_left = (count - done) as f64 / self.rendered as f64;
-        let left = (self.rendered > 0)
-            .then(|| format!(", {} left", seconds(self.rendering.as_secs_f64() * frames_left)))
-            .unwrap_or_default();
+        let per_frame = self.rendering.as_secs_f64() / self.rendered as f64;
+        let left = match self.rendered {
+            0 => String::new(),
+            _ => format!(", {} left", seconds(per_frame * (count - done) as f64)),
+        };
         let (rendered, outcome) = picture::render(
             &Arc::new(files),
             None,
