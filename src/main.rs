@@ -4,7 +4,7 @@
 
 use std::process::ExitCode;
 use weekender::batch::{self, info, merge};
-use weekender::cli::{self, Request};
+use weekender::cli::{self, Command, Request};
 use weekender::comparison::{check, compare};
 use weekender::system::failure::Failure;
 use weekender::system::{interrupt, journal, terminal};
@@ -40,27 +40,27 @@ fn run() -> Result<ExitCode, Failure> {
         Request::SaveScene(recipe, path) => batch::save_scene(&recipe, &path),
         Request::Frames(options) => batch::render_frames(*options),
         Request::Batch(options) => batch::run(*options),
-        Request::Merge(options) => merge::run(&options),
-        Request::Info(options) => info::run(&options),
-        Request::Compare(options) => compare::run(&options).map_err(Failure::Input),
-        Request::Check(options) => check::run(&options).map_err(Failure::Input),
-        request => run_tool(request),
+        Request::Command(Command::Merge(options)) => merge::run(&options),
+        Request::Command(Command::Info(options)) => info::run(&options),
+        Request::Command(Command::Compare(options)) => compare::run(&options).map_err(Failure::Input),
+        Request::Command(Command::Check(options)) => check::run(&options).map_err(Failure::Input),
+        Request::Command(tool) => run_tool(tool),
     }
 }
 
 /// Measurements, which a program inside a page leaves out.
 #[cfg(not(target_family = "wasm"))]
-fn run_tool(request: Request) -> Result<ExitCode, Failure> {
+fn run_tool(tool: Command) -> Result<ExitCode, Failure> {
     use weekender::measure::{bench, report, stress};
-    match request {
-        Request::Bench(options) => bench::run(&options),
-        Request::Report(options) => report::run(&options),
-        Request::Stress(options) => stress::run(&options),
+    match tool {
+        Command::Bench(options) => bench::run(&options),
+        Command::Report(options) => report::run(&options),
+        Command::Stress(options) => stress::run(&options),
         _ => unreachable!("run() has the others"),
     }
 }
 
 #[cfg(target_family = "wasm")]
-fn run_tool(_: Request) -> Result<ExitCode, Failure> {
+fn run_tool(_: Command) -> Result<ExitCode, Failure> {
     Err(Failure::Input(anyhow::anyhow!("the program for browsers does not measure")))
 }

@@ -4,6 +4,10 @@
 pub mod explain;
 pub mod layers;
 
+mod pending;
+
+pub use pending::{Factory, Pending, Prepared, make};
+
 use crate::job::render::Renderer;
 use crate::render_cpu::{CpuOptions, CpuRenderer, Isa};
 use crate::render_gpu::{AdapterInfo, GpuOptions, GpuRenderer, adapters};

@@ -1,7 +1,7 @@
 //! The films and the picture of a render: locked and checked before it begins, and written at its end.
 
 use super::{BatchOptions, Output};
-use crate::denoise::{self, DenoisedError};
+use crate::denoise::{self, Denoised, DenoisedError};
 use crate::film::{Description, Film, LockedFilm, SampleRanges, key};
 use crate::job::output::{OutputFormat, write_image_as};
 use crate::job::recipe::file;
@@ -79,9 +79,9 @@ impl Files {
                 continue;
             }
             let found = Replaced::at(path, &file::to_picture_toml(&options.recipe));
+            let Some(found) = found else { continue };
             if *is_checkpoint {
-                found.refusal(path).map_or(Ok(()), |reason| Err(Failure::Input(anyhow!(reason))))?;
-                continue;
+                return Err(Failure::Input(anyhow!(found.refusal(path))));
             }
             let is_kept = |samples: &SampleRanges| {
                 let planned = options.plan.range();
@@ -89,12 +89,8 @@ impl Files {
                     || resumed.is_some_and(|film| film.samples().contains(samples))
             };
             warnings.extend(found.warning(path, is_kept));
-            if let Replaced::Same(samples) = &found
-                && is_kept(samples)
-            {
-                // A render that stops early must not replace it either.
-                file.holds(samples);
-            }
+            // A render that stops early must not replace it either.
+            found.samples.iter().filter(|samples| is_kept(samples)).for_each(|samples| file.holds(samples));
         }
         Ok(warnings)
     }
@@ -140,14 +136,7 @@ impl Files {
     /// requested, the picture is that of the film, and a note says so.
     pub fn write(&self, film: &Film, status: &Status, mut say: impl FnMut(&Path)) -> Written {
         let (options, mut written) = (&self.options, Written::default());
-        let denoised = match options.denoise.then(|| denoise::of_film(film)) {
-            Some(Err(reason)) => {
-                written.notes.push(format!("the picture is not denoised: {reason}"));
-                None
-            }
-            Some(Ok(denoised)) => Some(denoised),
-            None => None,
-        };
+        let denoised = denoised(film, options.denoise, |reason| written.notes.push(reason));
         written.denoised = denoised.as_ref().map(|denoised| denoised.error);
         let description = self.described(film, status);
         let mut of_picture = description.clone();
@@ -198,6 +187,12 @@ impl Files {
         }
         description
     }
+}
+
+/// The denoised film, if it is wanted. If it cannot be had, `say` gets the reason.
+pub(super) fn denoised(film: &Film, is_wanted: bool, say: impl FnOnce(String)) -> Option<Denoised> {
+    let denoised = is_wanted.then(|| denoise::of_film(film))?;
+    denoised.map_err(|reason| say(format!("the picture is not denoised: {reason}"))).ok()
 }
 
 /// The directories of the files that the render writes.

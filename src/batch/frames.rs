@@ -4,17 +4,20 @@
 use super::files::Files;
 use super::picture::{self, Screen};
 use super::studio::Studio;
-use super::{BatchOptions, Line, Output, ended, report};
+use super::summary::with_recipe;
+use super::{BatchOptions, Line, Output, check_before, ended, report};
 use crate::film::{SOFTWARE, key};
+use crate::job::output::OutputFormat;
 use crate::job::saved::is_whole_frame;
 use crate::progressive::describe::{counted, seconds};
 use crate::scene::animation::CameraPath;
 use crate::system::console;
 use crate::system::failure::Failure;
-use crate::system::files::{check_writable, make_directory};
+use crate::system::files::make_directory;
 use crate::system::interrupt::Interrupt;
 use anyhow::{Context, Result};
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -35,6 +38,16 @@ pub struct FramesOptions {
 }
 
 impl FramesOptions {
+    /// The picture of a frame. All frames share the scene, so it is validated and prepared once if the camera allows.
+    fn at(&self, frame: u32) -> Result<BatchOptions> {
+        let FramesOptions { picture, path, names, .. } = self;
+        let recipe = picture.recipe.at_frame(path, frame);
+        let job = picture.job.seen_by(recipe.camera, *picture.job.settings())?;
+        let output = |output: &Output| Output { path: names.path(frame), ..output.clone() };
+        let outputs = picture.outputs.iter().map(output).collect();
+        Ok(BatchOptions { recipe, job, outputs, frame: Some(frame), ..picture.clone() })
+    }
+
     /// Checks the camera of every frame. Returns a warning if the picture turns over on the way.
     ///
     /// # Errors
@@ -81,7 +94,7 @@ pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
     };
     run.screen.display.clear();
     let figures = report(&run.json(), &LINES, options.picture.json.as_deref(), None);
-    if failure.is_none() && run.done() < options.frames.len() as u32 {
+    if failure.is_none() && !run.is_done() {
         console::note("run the same command again to continue");
     }
     ended(failure, figures, &interrupt)
@@ -114,10 +127,10 @@ struct Run<'a> {
     studio: Option<Studio<'a>>,
     screen: Screen,
     begin: Instant,
-    rendered: u32,
-    kept: u32,
-    /// The first and the last frame that are done.
-    ends: Option<[u32; 2]>,
+    /// The frames that are there.
+    done: BTreeSet<u32>,
+    /// How many of them this run has rendered, and how long that took.
+    rendered: usize,
     rendering: Duration,
 }
 
@@ -125,90 +138,71 @@ impl<'a> Run<'a> {
     /// Checks what could otherwise fail after rendering.
     fn new(options: &'a FramesOptions, interrupt: &'a Interrupt) -> Result<Self, Failure> {
         let FramesOptions { picture, frames, names, .. } = options;
+        let warning = options.check().map_err(Failure::Input)?;
         make_directory(&names.directory).map_err(Failure::Input)?;
-        let first = names.path(frames.start);
-        for path in [Some(first.as_path()), picture.json.as_deref()].into_iter().flatten() {
-            check_writable(path).map_err(Failure::input)?;
-        }
-        picture.check_memory()?;
+        check_before(&options.at(frames.start).map_err(Failure::Input)?)?;
         let mut screen = Screen::new(picture, frames.len() as u64);
-        options.check().map_err(Failure::Input)?.iter().for_each(|warning| screen.warn(warning));
-        let (begin, rendering) = (Instant::now(), Duration::ZERO);
-        Ok(Run {
-            options,
-            interrupt,
-            studio: None,
-            screen,
-            begin,
-            rendered: 0,
-            kept: 0,
-            ends: None,
-            rendering,
-        })
-    }
-
-    fn done(&self) -> u32 {
-        self.rendered + self.kept
+        warning.iter().for_each(|warning| screen.warn(warning));
+        let (begin, rendering, done) = (Instant::now(), Duration::ZERO, BTreeSet::new());
+        Ok(Run { options, interrupt, studio: None, screen, begin, done, rendered: 0, rendering })
     }
 
     fn render_all(&mut self, mut look: impl FnMut(u32)) -> Result<(), Failure> {
-        let mut missing: Vec<u32> = self.options.frames.clone().collect();
-        while !missing.is_empty() {
-            let mut left = Vec::new();
-            for frame in missing {
-                look(self.done());
+        loop {
+            for frame in self.options.frames.clone() {
+                if self.done.contains(&frame) {
+                    continue;
+                }
+                look(self.done.len() as u32);
                 if self.interrupt.is_set() {
                     return Ok(());
                 }
                 if self.finish(frame)? {
-                    let [first, last] = self.ends.unwrap_or([frame; 2]);
-                    self.ends = Some([first.min(frame), last.max(frame)]);
-                } else {
-                    left.push(frame);
+                    self.done.insert(frame);
                 }
             }
-            missing = left;
-            if !missing.is_empty() && !self.interrupt.is_set() {
-                std::thread::sleep(PAUSE);
+            if self.is_done() || self.interrupt.is_set() {
+                return Ok(());
             }
+            std::thread::sleep(PAUSE);
         }
-        Ok(())
+    }
+
+    fn is_done(&self) -> bool {
+        self.done.len() == self.options.frames.len()
     }
 
     /// Renders and writes a frame, unless it is there. Returns `false` after a signal, or if another run renders it.
     fn finish(&mut self, frame: u32) -> Result<bool, Failure> {
-        let FramesOptions { picture, path, names, .. } = self.options;
-        let recipe = picture.recipe.at_frame(path, frame);
-        // All frames share the scene, so it is validated and prepared once if the camera allows.
-        let job = picture.job.seen_by(recipe.camera, *picture.job.settings()).map_err(Failure::run)?;
-        let file = names.path(frame);
-        let outputs = picture.outputs.iter().map(|output| Output { path: file.clone(), ..output.clone() });
-        let options =
-            BatchOptions { recipe, job, frame: Some(frame), outputs: outputs.collect(), ..picture.clone() };
-        let until = options.until();
+        let options = self.options.at(frame).map_err(Failure::Run)?;
+        let (file, until) = (self.options.names.path(frame), options.until());
         let is_whole =
             |options: &BatchOptions| is_whole_frame(&file, &options.recipe, SOFTWARE, (key::UNTIL, &until));
         if is_whole(&options) {
-            self.kept += 1;
             return Ok(true);
         }
         let Ok(files) = Files::lock(options, Duration::ZERO) else { return Ok(false) };
         // Another run may have just finished it.
         if is_whole(&files.options) {
-            self.kept += 1;
             return Ok(true);
+        }
+        let is_undescribed = |Output { path, format, .. }: &Output| {
+            matches!(format, OutputFormat::P6 | OutputFormat::Pfm) && path.exists()
+        };
+        if files.options.outputs.iter().any(is_undescribed) {
+            self.screen.warn(
+                "frames that are there are rendered again: PPM and PFM cannot record how a frame was made, as PNG and EXR do",
+            );
         }
         let studio = match &mut self.studio {
             Some(studio) => studio,
-            none => none.insert(Studio::open(&picture.backend, self.interrupt)?),
+            none => none.insert(Studio::open(&self.options.picture.backend, self.interrupt)?),
         };
-        let (begin, done, count) =
-            (Instant::now(), self.rendered + self.kept, self.options.frames.len() as u32);
+        let (begin, done, count) = (Instant::now(), self.done.len(), self.options.frames.len());
+        let per_frame = self.rendering.as_secs_f64() / self.rendered as f64;
         let left = match self.rendered {
             0 => String::new(),
-            rendered => {
-                format!(", {} left", seconds((self.rendering / rendered * (count - done)).as_secs_f64()))
-            }
+            _ => format!(", {} left", seconds(per_frame * (count - done) as f64)),
         };
         let (rendered, outcome) = picture::render(
             &Arc::new(files),
@@ -217,7 +211,7 @@ impl<'a> Run<'a> {
             studio,
             self.interrupt,
             |display, status| {
-                display.update(u64::from(done), || {
+                display.update(done as u64, || {
                     let samples = status.samples_per_pixel;
                     format!("frame {frame}: {done} of {count} frames done, {samples} spp{left}")
                 });
@@ -239,34 +233,32 @@ impl<'a> Run<'a> {
 
     fn json(&self) -> Value {
         let FramesOptions { picture: BatchOptions { recipe, .. }, frames, names, .. } = self.options;
-        let file = |end: usize| Some(names.path(self.ends?[end]).to_string_lossy().into_owned());
-        json!({
-            "scene": recipe.name,
-            "width": recipe.settings.width,
-            "height": recipe.settings.height,
+        let file = |end: Option<&u32>| Some(names.path(*end?).to_string_lossy().into_owned());
+        let figures = json!({
             "samples_per_pixel": recipe.samples_per_pixel,
             "first_frame": frames.start,
             "last_frame": frames.end - 1,
             "frames": frames.len(),
-            "frames_done": self.done(),
+            "frames_done": self.done.len(),
             "rendered": self.rendered,
-            "kept": self.kept,
+            "kept": self.done.len() - self.rendered,
             "rendering_seconds": self.rendering.as_secs_f64(),
             "total_seconds": self.begin.elapsed().as_secs_f64(),
             "directory": names.directory.to_string_lossy(),
-            "first_file": file(0),
-            "last_file": file(1),
+            "first_file": file(self.done.first()),
+            "last_file": file(self.done.last()),
             "warnings": self.screen.warnings,
-        })
+        });
+        with_recipe(recipe, figures)
     }
 }
 
 /// The failure of a frame after `done` complete ones.
-fn broken_off(error: anyhow::Error, frame: u32, done: u32) -> Failure {
+fn broken_off(error: anyhow::Error, frame: u32, done: usize) -> Failure {
     if done == 0 {
         return Failure::Run(error);
     }
-    let done = counted(u64::from(done), "frame");
+    let done = counted(done as u64, "frame");
     let context = format!("frame {frame} failed; {done} are kept; run the same command again to continue");
     Failure::BrokeOff(error.context(context))
 }
@@ -275,10 +267,7 @@ fn broken_off(error: anyhow::Error, frame: u32, done: u32) -> Failure {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FrameNames {
     pub directory: PathBuf,
-    before: String,
-    /// Minimum number of digits.
-    digits: usize,
-    after: String,
+    name: String,
 }
 
 impl FrameNames {
@@ -286,21 +275,22 @@ impl FrameNames {
     /// `None` unless the file name has exactly one run of them.
     pub fn of_pattern(pattern: &Path) -> Option<FrameNames> {
         let name = pattern.file_name()?.to_str()?;
-        let (before, rest) = name.split_once('#')?;
-        let after = rest.trim_start_matches('#');
-        if after.contains('#') {
-            return None;
-        }
-        Some(FrameNames {
+        let place = place(name);
+        let is_one = !place.is_empty() && place.bytes().all(|sign| sign == b'#');
+        is_one.then(|| FrameNames {
             directory: pattern.parent().map(Path::to_owned).unwrap_or_default(),
-            before: before.to_owned(),
-            digits: name.len() - before.len() - after.len(),
-            after: after.to_owned(),
+            name: name.to_owned(),
         })
     }
 
     pub fn path(&self, frame: u32) -> PathBuf {
-        let FrameNames { directory, before, digits, after } = self;
-        directory.join(format!("{before}{frame:0digits$}{after}"))
+        let place = place(&self.name);
+        let number = format!("{frame:0digits$}", digits = place.len());
+        self.directory.join(self.name.replace(place, &number))
     }
+}
+
+/// A name from its first `#` to its last.
+fn place(name: &str) -> &str {
+    name.trim_matches(|sign| sign != '#')
 }

@@ -1,7 +1,8 @@
 //! `weekender info`: the metadata of a film, picture or scene file.
 
+use super::summary::with_recipe;
 use super::{Line, SCHEMA, aligned, lines};
-use crate::film::{CheckpointError, FilmHead, checkpoint, key};
+use crate::film::{CheckpointError, FilmFile, FilmHead, checkpoint, key};
 use crate::job::saved::{self, Kind};
 use crate::system::failure::Failure;
 use crate::system::files::STANDARD;
@@ -33,10 +34,13 @@ const LINES: [Line; 11] = [
 ];
 
 /// Options of `weekender info`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, clap::Args)]
 pub struct InfoOptions {
+    /// A film, picture or scene file
+    #[arg(value_name = "FILE")]
     pub file: PathBuf,
-    /// Whether to print JSON.
+    /// Print it as JSON
+    #[arg(long)]
     pub json: bool,
 }
 
@@ -57,40 +61,28 @@ pub fn run(options: &InfoOptions) -> Result<ExitCode, Failure> {
 
 fn figures(path: &Path) -> anyhow::Result<Value> {
     let saved = saved::open(path)?;
-    let (recipe, settings) = (&saved.recipe, &saved.recipe.settings);
     let (kind, head, samples) = match &saved.kind {
-        Kind::Scene => ("scene", None, Some(recipe.samples_per_pixel)),
+        Kind::Scene => ("scene", None, Some(saved.recipe.samples_per_pixel)),
         Kind::Picture(_) => ("picture", None, saved.samples()),
         Kind::Film(head) => ("film", Some(head), Some(head.samples.count())),
     };
     // A film's error needs memory for its sums.
-    let (mut estimate, mut error) = (None, saved.kind.text(key::ERROR).map(str::to_owned));
-    if head.is_some() {
-        error = Some(match checkpoint::load(path) {
-            Ok(read) => {
-                estimate = read.film.error();
-                read.film.error_words()
-            }
-            Err(CheckpointError::Memory { reason, .. }) => reason.to_string(),
-            Err(error) => return Err(error.into()),
-        });
-    }
+    let (estimate, error) = match head.map(|_| checkpoint::load(path)) {
+        None => (None, None),
+        Some(Ok(FilmFile { film, .. })) => (film.error(), Some(film.error_words())),
+        Some(Err(CheckpointError::Memory { reason, .. })) => (None, Some(reason.to_string())),
+        Some(Err(error)) => return Err(error.into()),
+    };
     let of_film = |value: fn(&FilmHead) -> Value| head.map(value);
     let resaved = match checkpoint::read_head(path) {
         Err(error @ CheckpointError::Resaved { .. }) => Some(error.to_string()),
         _ => None,
     };
-    Ok(json!({
+    let figures = json!({
         "kind": kind,
         "file": path.to_string_lossy(),
         "bytes": std::fs::metadata(path).map_or(0, |found| found.len()),
-        "scene": recipe.name,
         "stage": saved.kind.text(key::STAGE),
-        "width": settings.width,
-        "height": settings.height,
-        "max_depth": settings.max_depth,
-        "sampler": settings.sampler.name(),
-        "seed": settings.seed,
         "samples_per_pixel": samples,
         "sample_ranges": of_film(|head| head.samples.to_string().into()),
         "rejected_samples": of_film(|head| head.rejected.into()),
@@ -105,5 +97,6 @@ fn figures(path: &Path) -> anyhow::Result<Value> {
         "program": saved.kind.text(key::SOFTWARE),
         "command": saved.kind.text(key::COMMAND),
         "note": resaved,
-    }))
+    });
+    Ok(with_recipe(&saved.recipe, figures))
 }

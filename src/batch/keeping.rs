@@ -18,24 +18,22 @@ pub(super) struct Keeper {
     asked: u64,
     /// Outcome of the write in progress.
     pending: Option<Receiver<Outcome>>,
-    /// Samples per pixel in the file.
-    kept: Option<u64>,
 }
 
-/// Samples per pixel and a note for the user, or why the write failed.
-type Outcome = Result<(u64, Option<String>), String>;
+/// A note for the user, or why the write failed.
+type Outcome = Result<Option<String>, String>;
 
 fn write(files: &Files, film: &Film, status: &Status) -> Outcome {
     let note = files.save_checkpoint(film, &status.of_film(film, files.held_before))?;
     log::info!("checkpoint: {} samples per pixel", film.sample_count());
-    Ok((film.sample_count(), note))
+    Ok(note)
 }
 
 impl Keeper {
     /// Keeps the film in the checkpoint.
     pub fn new(files: &Arc<Files>) -> Keeper {
         let (files, asked) = (Arc::clone(files), files.held_before);
-        Keeper { files, last: Instant::now(), asked, pending: None, kept: None }
+        Keeper { files, last: Instant::now(), asked, pending: None }
     }
 
     /// Starts a write if it is time. Returns a warning if the last one failed.
@@ -68,27 +66,18 @@ impl Keeper {
         warning
     }
 
-    /// Waits until the current checkpoint is written. Returns the samples per pixel in the file.
-    pub fn finish(mut self) -> Option<u64> {
-        if let Some(Ok(outcome)) = self.pending.take().map(|pending| pending.recv()) {
-            self.note(outcome);
-        }
-        self.kept
+    /// Waits until the current checkpoint is written. If that fails, the last write will say so.
+    pub fn finish(self) {
+        let _ = self.pending.map(|pending| pending.recv());
     }
 
     fn note(&mut self, outcome: Outcome) -> Option<String> {
         (self.pending, self.last) = (None, Instant::now());
-        match outcome {
-            Ok((samples, note)) => {
-                self.kept = Some(samples);
-                note
-            }
-            Err(reason) => {
-                // Retry even without new samples.
-                self.asked = 0;
-                Some(format!("{reason}; rendering continues, and the write will be retried"))
-            }
-        }
+        outcome.unwrap_or_else(|reason| {
+            // Retry even without new samples.
+            self.asked = 0;
+            Some(format!("{reason}; rendering continues, and the write will be retried"))
+        })
     }
 }
 
@@ -125,8 +114,8 @@ mod tests {
         );
         assert!(matches!(status.phase, Phase::Done(_)), "{status:?}");
         assert!(warnings[0].contains("will be retried"), "{warnings:?}");
-        let kept = keeper.finish().unwrap();
-        assert_eq!(checkpoint::load(&path).unwrap().film.sample_count(), kept);
+        keeper.finish();
+        let kept = checkpoint::load(&path).unwrap().film.sample_count();
         assert!(kept > 0 && kept <= progressive.take_film().unwrap().sample_count());
     }
 }

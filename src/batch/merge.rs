@@ -1,5 +1,6 @@
 //! `weekender merge`: adds films of the same picture, and says which of the requested samples are missing.
 
+use super::files::denoised;
 use crate::denoise;
 use crate::film::{CheckpointError, Film, FilmSum, SampleRanges, checkpoint, key};
 use crate::job::output::{OutputFormat, write_image_as};
@@ -20,18 +21,26 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Options of `weekender merge`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, clap::Args)]
 pub struct MergeOptions {
+    /// Film files (.exr), as --checkpoint, --out and merge write them
+    #[arg(required = true, num_args = 1.., value_name = "FILM")]
     pub films: Vec<PathBuf>,
-    /// Files of the result.
+    /// Where the result is written: .exr for the film, .png or .ppm for the picture; may be repeated
+    #[arg(long, value_name = "FILE", required_unless_present = "samples")]
     pub out: Vec<PathBuf>,
-    /// Samples per pixel that the picture should have.
+    /// Samples per pixel that the picture should have, 1 to 4294967296: list which are missing, which films are damaged
+    /// or do not fit, and the commands that render what is missing
+    #[arg(long, value_name = "COUNT")]
     pub samples: Option<u64>,
-    /// Whether the picture is denoised.
+    /// Denoise the picture, with an estimate of its error; an .exr keeps its film and gains it as a layer
+    #[arg(long, requires = "out")]
     pub denoise: bool,
     /// How commands call this program.
+    #[arg(skip)]
     pub program: String,
     /// The command line, as files record it.
+    #[arg(skip)]
     pub command: String,
 }
 
@@ -126,17 +135,12 @@ fn write(options: &MergeOptions, sum: &FilmSum) -> Result<String, Failure> {
     let recipe = file::parse(description.recipe(), "the films' recipe").map_err(Failure::input)?;
     let is_kept = |samples: &SampleRanges| film.samples().contains(samples);
     for out in out {
-        if let Some(warning) = Replaced::at(out, description.recipe()).warning(out, is_kept) {
+        let found = Replaced::at(out, description.recipe());
+        if let Some(warning) = found.and_then(|found| found.warning(out, is_kept)) {
             console::note(&format!("warning: {warning}"));
         }
     }
-    let denoised = match options.denoise.then(|| denoise::of_film(film)) {
-        Some(Err(reason)) => {
-            console::note(&format!("warning: the picture is not denoised: {reason}"));
-            None
-        }
-        denoised => denoised.and_then(Result::ok),
-    };
+    let denoised = denoised(film, options.denoise, |reason| console::note(&format!("warning: {reason}")));
     if let Some(denoised) = &denoised {
         description.set(key::DENOISED, denoised.error.words());
     }

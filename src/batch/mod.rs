@@ -16,12 +16,12 @@ pub use summary::{Line, aligned, lines};
 
 use crate::backends::{self, BackendChoice};
 use crate::denoise;
-use crate::film::{CheckpointError, Film};
+use crate::film::CheckpointError;
 use crate::job::output::OutputFormat;
 use crate::job::recipe::{Recipe, file};
 use crate::job::render::RenderJob;
 use crate::job::saved::{self, OpenError, SavedFilm};
-use crate::progressive::{EndReason, Phase, Plan, Status};
+use crate::progressive::{Plan, Status};
 use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
 use crate::system::console;
@@ -30,8 +30,8 @@ use crate::system::files::{FileLock, STANDARD, ShownPath, check_replaceable, che
 use crate::system::interrupt::Interrupt;
 use crate::system::terminal::{self, Display, ProgressChoice, print, print_beside};
 use anyhow::Context;
-use files::{Files, Written};
-use picture::{Rendered, STEPS, Screen, show};
+use files::Files;
+use picture::{STEPS, Screen, show};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -103,12 +103,6 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     check_before(&options)?;
     let mut files = Files::lock(options, FileLock::PATIENCE)?;
     let resumed = resumed(&files.options)?;
-    if resumed.as_ref().is_some_and(|saved| is_complete(&files.options, &saved.film))
-        && let Some(saved) = resumed
-    {
-        let reported = report_picture(&files.options, &figures_of_complete(&files.options, saved.film));
-        return reported.map(|()| ExitCode::SUCCESS).map_err(Failure::Run);
-    }
     let warnings = files.check(resumed.as_ref())?;
     let (files, film) = (Arc::new(files), resumed.map(|saved| saved.film));
     let options = &files.options;
@@ -149,30 +143,6 @@ fn resumed(options: &BatchOptions) -> Result<Option<SavedFilm>, Failure> {
         }
         found => found.map(Some).map_err(Failure::input),
     }
-}
-
-/// Whether the continued film has all samples and is all that would be written.
-fn is_complete(options: &BatchOptions, film: &Film) -> bool {
-    let is_kept = |output: &Output| output.is_checkpoint || !options.denoise;
-    options.save_scene.is_none()
-        && options
-            .outputs
-            .iter()
-            .all(|output| options.resume.as_ref() == Some(&output.path) && is_kept(output))
-        && film.samples().first_gap(options.plan.range(), u64::MAX).is_none()
-}
-
-fn figures_of_complete(options: &BatchOptions, film: Film) -> Value {
-    let status = Status {
-        phase: Phase::Done(EndReason::Samples),
-        samples_per_pixel: film.sample_count(),
-        rejected_samples: film.rejected(),
-        error: film.error(),
-        ..Status::default()
-    };
-    let files = options.outputs.iter().map(|output| output.path.clone()).collect();
-    let written = Written { files, ..Written::default() };
-    figures(options, &Rendered { film: Some(film), status, written, writing: Duration::ZERO })
 }
 
 /// Version of the JSON. Incremented when a key is removed or changes meaning.

@@ -4,7 +4,7 @@ use super::BatchOptions;
 use super::files::{Files, Written};
 use super::keeping::Keeper;
 use super::studio::{Event, Studio};
-use crate::film::Film;
+use crate::film::{Film, checkpoint};
 use crate::progressive::describe::seconds;
 use crate::progressive::{EndReason, Phase, Plan, Status};
 use crate::system::failure::Failure;
@@ -95,7 +95,7 @@ pub(super) fn render(
     let names: Vec<String> = options.outputs.iter().map(|output| output.path.shown()).collect();
     let guard = interrupt.while_writing(names.join(" and "));
     let begin = Instant::now();
-    let kept = keeper.and_then(Keeper::finish);
+    keeper.into_iter().for_each(Keeper::finish);
     let mut written = Written::default();
     let is_whole = matches!(status.phase, Phase::Done(reason) if reason != EndReason::Stopped);
     let is_written = |film: &&Film| film.sample_count() > 0 && (is_whole || options.frame.is_none());
@@ -109,24 +109,24 @@ pub(super) fn render(
     if matches!(status.phase, Phase::Failed(_)) {
         journal::write_report();
     }
-    let outcome = outcome(options, &status, film.as_ref(), &written, kept);
+    let outcome = outcome(options, &status, film.as_ref(), &written);
     (Rendered { status, film, written, writing: begin.elapsed() }, outcome)
 }
 
-/// The result of a render and of writing its files. `kept` is the number of samples per pixel in the checkpoint.
+/// The result of a render and of writing its files.
 fn outcome(
     options: &BatchOptions,
     status: &Status,
     film: Option<&Film>,
     written: &Written,
-    kept: Option<u64>,
 ) -> Result<(), Failure> {
     let failures = written.failures.join("; ");
     let Phase::Failed(reason) = &status.phase else {
         return if failures.is_empty() { Ok(()) } else { Err(Failure::Run(anyhow!(failures))) };
     };
     let held = film.filter(|_| !written.files.is_empty()).map_or(0, Film::sample_count);
-    Err(match (kept, options.checkpoint()) {
+    let kept = |path: &Path| Some((checkpoint::read_head(path).ok()?.samples.count(), path.shown()));
+    Err(match options.checkpoint().and_then(kept) {
         _ if !failures.is_empty() => Failure::Run(anyhow!("{reason}; {failures}")),
         _ if held > 0 => {
             let files = written.files.iter().map(ShownPath::shown).collect::<Vec<_>>().join(", ");
@@ -134,10 +134,8 @@ fn outcome(
                 "{reason}; the {held} samples per pixel rendered before are in {files}"
             ))
         }
-        (Some(kept), Some(path)) => {
-            Failure::BrokeOff(anyhow!("{reason}; {kept} samples per pixel are in {}", path.shown()))
-        }
-        _ => Failure::Run(anyhow!("{reason}")),
+        Some((kept, path)) => Failure::BrokeOff(anyhow!("{reason}; {kept} samples per pixel are in {path}")),
+        None => Failure::Run(anyhow!("{reason}")),
     })
 }
 

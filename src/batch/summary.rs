@@ -3,6 +3,7 @@
 use super::BatchOptions;
 use super::picture::Rendered;
 use crate::film::Film;
+use crate::job::recipe::Recipe;
 use crate::progressive::Phase;
 use crate::progressive::describe::seconds;
 use crate::system::console::printable;
@@ -89,21 +90,15 @@ pub(super) const PICTURE: [Line; 10] = [
 pub(super) fn figures(options: &BatchOptions, picture: &Rendered) -> Value {
     let Rendered { status, film, written, writing } = picture;
     let film = film.as_ref();
-    let (settings, backend, error) = (options.job.settings(), status.backend.as_ref(), status.error);
+    let (backend, error) = (status.backend.as_ref(), status.error);
     let preparing = status.prepare.saturating_sub(status.hierarchy);
     let ended_by = match &status.phase {
-        Phase::Done(reason) => reason.name(),
-        Phase::Failed(_) => "failure",
-        _ => "nothing",
+        Phase::Done(reason) => json!(reason),
+        Phase::Failed(_) => json!("failure"),
+        _ => json!("nothing"),
     };
-    json!({
-        "scene": options.recipe.name,
+    let figures = json!({
         "stage": options.stage.map(|stage| stage.id),
-        "width": settings.width,
-        "height": settings.height,
-        "max_depth": settings.max_depth,
-        "sampler": settings.sampler.name(),
-        "seed": settings.seed,
         "backend": backend.map(|info| info.name),
         "device": backend.map(|info| &info.device),
         "lanes": backend.map(|info| info.lanes),
@@ -136,5 +131,15 @@ pub(super) fn figures(options: &BatchOptions, picture: &Rendered) -> Value {
         "history": status.history,
         "warnings": status.messages,
         "files": written.files.iter().map(|file| file.to_string_lossy()).collect::<Vec<_>>(),
-    })
+    });
+    with_recipe(&options.recipe, figures)
+}
+
+/// Figures, with the name and the settings of their picture.
+pub(super) fn with_recipe(recipe: &Recipe, mut figures: Value) -> Value {
+    figures["scene"] = recipe.name.as_str().into();
+    if let (Value::Object(figures), Value::Object(settings)) = (&mut figures, json!(recipe.settings)) {
+        figures.extend(settings);
+    }
+    figures
 }

@@ -47,9 +47,7 @@ pub(super) fn frames(mut flags: RenderFlags, command: String) -> Result<FramesOp
     let files: Vec<PathBuf> = frames.clone().map(|frame| names.path(frame)).collect();
     let outputs = files.iter().chain(&picture.json).map(PathBuf::as_path);
     check_paths(scene.iter().map(PathBuf::as_path), outputs)?;
-    let options = FramesOptions { picture, path, frames, names };
-    options.check()?;
-    Ok(options)
+    Ok(FramesOptions { picture, path, frames, names })
 }
 
 /// The files of the frames: `frame-0000.png` and so on in a directory, or named after a pattern, which `out` becomes.

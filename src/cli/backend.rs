@@ -1,11 +1,11 @@
-//! The flags that choose a backend. All commands that render have them, as a [`BackendChoice`] among their options.
+//! The flags that choose a backend.
 
 use super::values::{Auto, parse_isa, parse_simd, whole};
 use crate::backends::BackendChoice;
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::render_gpu::GpuOptions;
-use clap::error::ErrorKind;
-use clap::{ArgMatches, Args, Command, FromArgMatches, ValueEnum};
+use anyhow::{Result, bail};
+use clap::{Args, ValueEnum};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Device {
@@ -17,7 +17,7 @@ enum Device {
 
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Device")]
-struct BackendFlags {
+pub(super) struct BackendFlags {
     /// What renders; auto: the fastest available
     #[arg(long, value_enum, default_value = "auto")]
     device: Device,
@@ -36,7 +36,7 @@ struct BackendFlags {
 }
 
 impl BackendFlags {
-    fn choice(self) -> Result<BackendChoice, String> {
+    pub fn choice(&self) -> Result<BackendChoice> {
         let (isa, lanes, threads) = (self.isa, self.simd, self.threads);
         let cpu = CpuOptions { isa, lanes, threads, ..CpuOptions::default() };
         let gpu = GpuOptions::of_adapter(self.adapter.as_deref());
@@ -45,7 +45,7 @@ impl BackendFlags {
         let device =
             self.device.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
         let refuse = |flags: &str, limit: &str| {
-            Err(format!("{flags} cannot be used with --device {device}: {limit}; leave one of them out"))
+            bail!("{flags} cannot be used with --device {device}: {limit}; leave one of them out")
         };
         match self.device {
             Device::Cpu | Device::Reference if for_gpu => refuse("--adapter", "it applies only to the GPU"),
@@ -55,28 +55,6 @@ impl BackendFlags {
             Device::Auto if gpu.adapter.is_none() => Ok(BackendChoice::auto(cpu, gpu)),
             Device::Auto | Device::Gpu => Ok(BackendChoice::Gpu(gpu)),
         }
-    }
-}
-
-impl FromArgMatches for BackendChoice {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let choice = BackendFlags::from_arg_matches(matches)?.choice();
-        choice.map_err(|error| clap::Error::raw(ErrorKind::ArgumentConflict, format!("{error}\n")))
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
-    }
-}
-
-impl Args for BackendChoice {
-    fn augment_args(command: Command) -> Command {
-        BackendFlags::augment_args(command)
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
     }
 }
 

@@ -133,12 +133,12 @@ impl BenchOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::Request;
+    use crate::cli::{Command, Request};
     use crate::cli::tests::request;
 
     fn options(words: &str) -> BenchOptions {
         match request(&format!("bench --scene metals --isa portable --threads 1 {words}")) {
-            Ok(Request::Bench(options)) => *options,
+            Ok(Request::Command(Command::Bench(options))) => *options,
             other => panic!("{other:?}"),
         }
     }

@@ -1,54 +1,14 @@
-//! Commands whose flags are their options: merge, info, check, compare and stress.
+//! Commands whose flags are their options: check, compare and stress.
 
-use super::check_outputs;
 use super::sources::Names;
-use super::values::{Auto, parse_levels, whole};
-use crate::batch::merge::MergeOptions;
-use crate::job::output::{Encoding, OutputFormat};
-use crate::job::render::SAMPLE_LIMIT;
+use super::values::{Auto, parse_levels};
+use crate::job::output::Encoding;
 use crate::render_cpu::Isa;
 use crate::stages::{Stage, Transfer};
 use crate::system::terminal::ProgressChoice;
-use anyhow::Result;
 use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-
-#[derive(Clone, Debug, Args)]
-pub(super) struct MergeFlags {
-    /// Film files (.exr), as --checkpoint, --out and merge write them
-    #[arg(required = true, num_args = 1.., value_name = "FILM")]
-    films: Vec<PathBuf>,
-    /// Where the result is written: .exr for the film, .png or .ppm for the picture; may be repeated
-    #[arg(long, value_name = "FILE", required_unless_present = "samples")]
-    out: Vec<PathBuf>,
-    /// Samples per pixel that the picture should have, 1 to 4294967296: list which are missing, which films are damaged
-    /// or do not fit, and the commands that render what is missing
-    #[arg(long, value_name = "COUNT", value_parser = whole::<u64>(1..=SAMPLE_LIMIT))]
-    samples: Option<u64>,
-    /// Denoise the picture, with an estimate of its error; an .exr keeps its film and gains it as a layer
-    #[arg(long, requires = "out")]
-    denoise: bool,
-}
-
-impl MergeFlags {
-    pub fn options(self, program: String, command: String) -> Result<MergeOptions> {
-        let MergeFlags { films, out, samples, denoise } = self;
-        out.iter().try_for_each(|out| OutputFormat::from_path(out).map(drop))?;
-        check_outputs(films.iter().map(PathBuf::as_path), out.iter().map(PathBuf::as_path))?;
-        Ok(MergeOptions { films, out, samples, denoise, program, command })
-    }
-}
-
-#[derive(Clone, Debug, Args)]
-pub(super) struct InfoFlags {
-    /// A film, picture or scene file
-    #[arg(value_name = "FILE")]
-    pub file: PathBuf,
-    /// Print it as JSON
-    #[arg(long)]
-    pub json: bool,
-}
 
 /// Options of `weekender check`.
 #[derive(Clone, Debug, Args)]

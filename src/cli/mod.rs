@@ -25,7 +25,9 @@ use crate::batch::info::InfoOptions;
 use crate::batch::merge::MergeOptions;
 use crate::batch::{BatchOptions, FramesOptions};
 use crate::film::checkpoint;
+use crate::job::output::OutputFormat;
 use crate::job::recipe::Recipe;
+use crate::job::render::SAMPLE_LIMIT;
 use crate::system::failure::{EXIT_CODES, Failure};
 use crate::system::journal;
 use crate::system::shell;
@@ -49,13 +51,7 @@ pub enum Request {
     SaveScene(Box<Recipe>, PathBuf),
     Frames(Box<FramesOptions>),
     Batch(Box<BatchOptions>),
-    Merge(MergeOptions),
-    Info(InfoOptions),
-    Bench(Box<BenchOptions>),
-    Compare(Box<CompareOptions>),
-    Report(Box<ReportOptions>),
-    Stress(Box<StressOptions>),
-    Check(Box<CheckOptions>),
+    Command(Command),
 }
 
 /// The path tracer of "Ray Tracing in One Weekend", as a viewer and a headless renderer.
@@ -75,8 +71,9 @@ struct Raw {
     _command: Option<Command>,
 }
 
+/// A command with its options, which have been checked.
 #[derive(Debug, Subcommand)]
-enum Command {
+pub enum Command {
     /// Measure the speed of this machine, compared with a plain C program: tables and JSON
     ///
     /// Rows take turns, after an untimed warm-up. Medians are shown with minimum and maximum. Reading, preparing and
@@ -86,9 +83,9 @@ enum Command {
     ///
     /// With --samples, films that are damaged or do not fit are left out, and what is missing is listed with the commands
     /// that render it; the exit code is then 1. It is 0 if nothing is missing, and 2 if nothing could be merged.
-    Merge(direct::MergeFlags),
+    Merge(MergeOptions),
     /// Show the metadata of a film, picture or scene file
-    Info(direct::InfoFlags),
+    Info(InfoOptions),
     /// Tell whether two pictures are equal apart from noise, and where they differ
     ///
     /// The exit code is 0 if they are equal, 1 if they differ and 2 if they could not be compared.
@@ -115,7 +112,9 @@ pub fn command() -> clap::Command {
         let takes_values = arg.get_action().takes_values();
         if takes_values { arg.allow_negative_numbers(true) } else { arg }
     };
-    Raw::command().mut_args(negative).mut_subcommands(move |command| command.mut_args(negative))
+    let samples = |arg: clap::Arg| arg.value_parser(values::whole::<u64>(1..=SAMPLE_LIMIT));
+    let command = Raw::command().mut_subcommand("merge", |merge| merge.mut_arg("samples", samples));
+    command.mut_args(negative).mut_subcommands(move |command| command.mut_args(negative))
 }
 
 /// Parses the command line and starts the log that it asks for. The first argument is the program's name.
@@ -139,21 +138,21 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
         };
         return request.map_err(Failure::Input);
     }
-    Ok(match Command::from_arg_matches(&matches).map_err(Failure::CommandLine)? {
-        Command::Merge(flags) => {
-            let options = flags.options(called(arguments.first()), recorded(&arguments));
-            Request::Merge(options.map_err(Failure::Input)?)
+    let mut command = Command::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
+    match &mut command {
+        Command::Merge(options) => {
+            (options.program, options.command) = (called(arguments.first()), recorded(&arguments));
+            check_merge(options).map_err(Failure::Input)?;
         }
-        Command::Info(direct::InfoFlags { file, json }) => Request::Info(InfoOptions { file, json }),
-        Command::Report(mut options) => {
-            options.command = recorded(&arguments);
-            Request::Report(options)
-        }
-        Command::Bench(options) => Request::Bench(options),
-        Command::Compare(options) => Request::Compare(options),
-        Command::Stress(options) => Request::Stress(options),
-        Command::Check(options) => Request::Check(options),
-    })
+        Command::Report(options) => options.command = recorded(&arguments),
+        _ => {}
+    }
+    Ok(Request::Command(command))
+}
+
+fn check_merge(MergeOptions { films, out, .. }: &MergeOptions) -> Result<()> {
+    out.iter().try_for_each(|out| OutputFormat::from_path(out).map(drop))?;
+    check_outputs(films.iter().map(PathBuf::as_path), out.iter().map(PathBuf::as_path))
 }
 
 /// Validates the flags without a subcommand. `command` is the command line.

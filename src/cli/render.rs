@@ -1,8 +1,8 @@
 //! Rendering, in the window or to files.
 
+use super::backend::BackendFlags;
 use super::sources::{self, ChosenRecipe, PictureFlags, SampleFlags};
 use super::values::{file_ending, parse_duration, parse_noise_target, parse_seconds, range, whole};
-use crate::backends::BackendChoice;
 use crate::batch::{BatchOptions, Output};
 use crate::job::output::OutputFormat;
 use crate::job::recipe::{Recipe, plain_name};
@@ -10,7 +10,7 @@ use crate::progressive::{NoiseOf, Plan, Stop};
 use crate::scene::animation::FRAME_LIMIT;
 use crate::system::files::{STANDARD, ShownPath};
 use crate::system::terminal::ProgressChoice;
-use anyhow::{Result, bail, ensure};
+use anyhow::{Result, anyhow, bail, ensure};
 use clap::Args;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -40,7 +40,7 @@ pub(super) struct RenderFlags {
     #[command(flatten)]
     pub stop: StopFlags,
     #[command(flatten)]
-    pub backend: BackendChoice,
+    pub backend: BackendFlags,
     #[command(flatten)]
     pub animation: AnimationFlags,
     #[command(flatten)]
@@ -170,7 +170,7 @@ pub(super) fn batch(flags: RenderFlags, command: String) -> Result<BatchOptions>
         every: flags.files.every,
         resume: flags.files.resume,
         save_scene: flags.files.save_scene,
-        backend: flags.backend,
+        backend: flags.backend.choice()?,
         progress: flags.progress,
         json: flags.files.json,
         command,
@@ -190,7 +190,7 @@ fn outputs(files: &FileFlags, default: Option<&str>) -> Result<Vec<Output>> {
                 path.shown()
             ),
             (Some(format), _) => format,
-            (None, named) => named?,
+            (None, named) => named.map_err(|error| anyhow!("{error}, or add --format"))?,
         };
         Ok(Output { path: path.clone(), format, is_checkpoint: false })
     };

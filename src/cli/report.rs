@@ -155,12 +155,12 @@ impl ReportOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::Request;
+    use crate::cli::{Command, Request};
     use crate::cli::tests::request;
 
     fn parsed(words: &str) -> ReportOptions {
         match request(&format!("report --out r {words}")) {
-            Ok(Request::Report(options)) => *options,
+            Ok(Request::Command(Command::Report(options))) => *options,
             other => panic!("{other:?}"),
         }
     }

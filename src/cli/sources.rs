@@ -16,9 +16,6 @@ use std::ffi::{OsStr, OsString};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// The default scene.
-const DEFAULT_SCENE: &str = "three-spheres";
-
 /// A parser of names. For an unknown one, clap suggests a similar one.
 #[derive(Clone)]
 pub(super) struct Names {
@@ -30,7 +27,9 @@ pub(super) struct Names {
 impl Names {
     pub fn of_scenes() -> Self {
         let known = PossibleValuesParser::new(BuiltinScene::ALL.iter().map(|scene| scene.name));
-        Names { known, is_other: |name| is_field(name) || scene_file(Some(name)).is_some() }
+        let is_field_or_file =
+            |name: &OsStr| name.to_string_lossy().starts_with("field:") || scene_file(Some(name)).is_some();
+        Names { known, is_other: is_field_or_file }
     }
 
     /// Other values are the sections of stages.
@@ -38,10 +37,6 @@ impl Names {
         let known = PossibleValuesParser::new(Stage::ALL.iter().map(|stage| stage.id));
         Names { known, is_other: |id| id.to_string_lossy().starts_with(|c: char| c.is_ascii_digit()) }
     }
-}
-
-fn is_field(name: &OsStr) -> bool {
-    name.to_string_lossy().starts_with("field:")
 }
 
 impl TypedValueParser for Names {
@@ -194,7 +189,7 @@ pub(super) fn find(flags: &PictureFlags, saved: Option<&Path>) -> Result<ChosenR
             let saved = open(path)?;
             Ok(ChosenRecipe { stage: saved.stage(), recipe: saved.recipe })
         }
-        (None, None, None) => Ok(ChosenRecipe { recipe: scene(DEFAULT_SCENE)?, stage: None }),
+        (None, None, None) => Ok(ChosenRecipe { recipe: scene("three-spheres")?, stage: None }),
     }
 }
 

@@ -93,6 +93,6 @@ pub(super) fn options(
         autosave_every: flags.window.autosave_every,
         state_directory: None,
         draw_with: flags.window.draw_with,
-        backend: flags.backend,
+        backend: flags.backend.choice()?,
     })
 }

@@ -25,8 +25,6 @@ pub mod key {
     pub const UNTIL: &str = "Until";
     pub const COMMAND: &str = "Command";
     pub const BACKEND: &str = "Backend";
-    /// The estimated error.
-    pub const ERROR: &str = "Error";
     /// That the picture is denoised, with its estimated error.
     pub const DENOISED: &str = "Denoised";
 }

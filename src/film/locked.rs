@@ -31,8 +31,8 @@ impl LockedFilm {
         self.held = samples.clone();
     }
 
-    /// Replaces the file with `film`, with a denoised picture of it as a layer. If the file already holds all of the film's samples and more, writes nothing and
-    /// returns a note for the user.
+    /// Replaces the file with `film`, with a denoised picture of it as a layer, unless the file holds just this film. If
+    /// it already holds all of the film's samples and more, writes nothing and returns a note for the user.
     ///
     /// # Errors
     /// [`WriteError`], also if the film and the file each have samples that the other lacks. The file is unchanged.
@@ -42,6 +42,9 @@ impl LockedFilm {
         denoised: Option<&Film>,
         description: &Description,
     ) -> Result<Option<String>, WriteError> {
+        if denoised.is_none() && *film.samples() == self.held && self.path.exists() {
+            return Ok(None);
+        }
         if film.samples().contains(&self.held) {
             checkpoint::save_with(&self.path, film, denoised, description)?;
             self.held = film.samples().clone();

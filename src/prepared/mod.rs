@@ -96,7 +96,7 @@ pub struct PreparedScene<R> {
     pub origin: DVec3,
     groups: Groups,
     overlaps: Arc<Overlaps>,
-    warning: Option<String>,
+    pub warning: Option<String>,
 }
 
 impl<R: Real> PreparedScene<R> {
@@ -268,11 +268,6 @@ impl<R: Real> PreparedScene<R> {
             has_hierarchy: self.hierarchy.is_some(),
             has_specks: self.groups.has_specks,
         }
-    }
-
-    /// A warning about what single precision cannot represent, with numbers and a remedy.
-    pub fn warning(&self) -> Option<&String> {
-        self.warning.as_ref()
     }
 }
 

@@ -10,6 +10,7 @@ use obvhs::Boundable;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
+use obvhs::ploc::morton::morton_encode_u64;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -120,7 +121,10 @@ fn along_a_curve(spheres: &[Bounded<'_>]) -> Vec<(u64, u32)> {
     let lowest = spheres.par_iter().map(Bounded::center).reduce(|| DVec3::INFINITY, DVec3::min);
     let highest = spheres.par_iter().map(Bounded::center).reduce(|| DVec3::NEG_INFINITY, DVec3::max);
     let size = (highest - lowest).max_element().max(f64::MIN_POSITIVE);
-    let code = |sphere: &Bounded| morton_code(((sphere.center() - lowest) / size).to_array());
+    let code = |sphere: &Bounded| {
+        let place = (sphere.center() - lowest) / size * f64::from((1 << 21) - 1);
+        morton_encode_u64(place.x as u32, place.y as u32, place.z as u32)
+    };
     let mut codes: Vec<(u64, u32)> =
         spheres.par_iter().enumerate().map(|(place, sphere)| (code(sphere), place as u32)).collect();
     codes.par_sort_unstable();
@@ -131,23 +135,6 @@ fn along_a_curve(spheres: &[Bounded<'_>]) -> Vec<(u64, u32)> {
 #[cfg(test)]
 pub(super) fn on_a_curve<'a, 'b>(spheres: &'a [Bounded<'b>]) -> Vec<&'a Bounded<'b>> {
     along_a_curve(spheres).into_iter().map(|(_, place)| &spheres[place as usize]).collect()
-}
-
-/// Interleaves 21 bits of each coordinate in 0 to 1.
-fn morton_code(place: [f64; 3]) -> u64 {
-    place.iter().enumerate().fold(0, |code, (axis, x)| {
-        let mut bits = (x * f64::from((1 << 21) - 1)) as u64;
-        for (shift, mask) in [
-            (32, 0x001F_0000_0000_FFFF),
-            (16, 0x001F_0000_FF00_00FF),
-            (8, 0x100F_00F0_0F00_F00F),
-            (4, 0x10C3_0C30_C30C_30C3),
-            (2, 0x1249_2492_4924_9249),
-        ] {
-            bits = (bits | bits << shift) & mask;
-        }
-        code | bits << axis
-    })
 }
 
 #[cfg(test)]

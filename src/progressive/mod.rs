@@ -15,6 +15,7 @@ mod status;
 mod view;
 mod worker;
 
+pub use crate::backends::Factory;
 pub use passes::PassSizer;
 pub use plan::{EndReason, NOISE_TARGET_FIRST_SAMPLES, NoiseOf, Plan, Stop};
 pub use shared::Picture;
@@ -25,7 +26,7 @@ use crate::backends::{self, BackendChoice};
 use crate::film::Film;
 use crate::job::render::{RenderJob, Renderer};
 use crate::system::threads;
-use render::Cancel;
+use render::{Cancel, Render};
 use shared::Shared;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -34,10 +35,7 @@ use std::sync::mpsc::{self, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
-use worker::{RenderCommand, Worker};
-
-/// Makes renderers, on the render thread or, while another renderer works, on a separate thread.
-pub type Factory = Box<dyn FnMut(&BackendChoice) -> anyhow::Result<Box<dyn Renderer>> + Send>;
+use worker::{Command, Worker};
 
 /// A render to start.
 pub struct RenderRequest {
@@ -59,7 +57,7 @@ impl RenderRequest {
 
 /// The handle of a render thread.
 pub struct Progressive {
-    commands: Sender<RenderCommand>,
+    commands: Sender<Command>,
     shared: Arc<Shared>,
     run: u64,
     cancel: Arc<Cancel>,
@@ -110,11 +108,8 @@ impl Progressive {
         self.cancel = Arc::default();
         self.run += 1;
         self.shared.publish(&Status { run: self.run, phase: Phase::Preparing, ..Status::default() });
-        self.send(RenderCommand::Start {
-            run: self.run,
-            request: Box::new(request),
-            cancel: Arc::clone(&self.cancel),
-        });
+        let (run, cancel) = (self.run, Arc::clone(&self.cancel));
+        self.send(move |worker| worker.start(run, request, cancel));
     }
 
     /// Starts a render and returns its last status when it is over. `look` sees every status, at least one per
@@ -144,33 +139,37 @@ impl Progressive {
 
     pub fn abandon(&mut self) {
         self.cancel.abandon();
-        self.send(RenderCommand::Abandon);
+        self.send(Worker::abandon);
     }
 
     /// Pauses at the end of the pass. The backend and the film are kept.
     pub fn pause(&self) {
-        self.send(RenderCommand::Pause);
+        self.change(|render, _| render.pause());
     }
 
     /// Continues after a pause or a stop.
     pub fn resume(&self) {
-        self.send(RenderCommand::Resume);
+        self.change(|render, _| {
+            if matches!(render.status.phase, Phase::Paused | Phase::Done(EndReason::Stopped)) {
+                render.resume();
+            }
+        });
     }
 
     /// Ends the render at the end of the pass, or during preparation.
     pub fn stop(&self) {
         self.cancel.stop.store(true, Ordering::Relaxed);
-        self.send(RenderCommand::Stop);
+        self.change(|render, _| render.stop());
     }
 
     /// Continues the same film with another backend. If that backend is not available, the old one continues.
     pub fn switch_backend(&self, backend: BackendChoice) {
-        self.send(RenderCommand::Switch(backend));
+        self.change(|render, factory| render.switch(backend, factory));
     }
 
     /// Changes when the render ends. A finished render continues if the new plan has work left.
     pub fn set_plan(&self, plan: Plan) {
-        self.send(RenderCommand::SetPlan(plan));
+        self.send(|worker| worker.change(|render, _| render.set_plan(plan)));
     }
 
     /// The status after the last pass.
@@ -187,13 +186,14 @@ impl Progressive {
     /// without a request.
     pub fn ask_for_picture(&self) {
         if self.shared.want_picture() {
-            self.send(RenderCommand::Look);
+            // Wakes the thread.
+            self.send(|_| ());
         }
     }
 
     /// Sets what later pictures show.
     pub fn set_view(&self, view: View) {
-        self.send(RenderCommand::SetView(view));
+        self.send(|worker| worker.set_view(view));
     }
 
     /// Sets a callback that the render thread calls when a picture is ready or the phase has changed. It must be quick.
@@ -203,7 +203,7 @@ impl Progressive {
 
     /// Runs `look` with the film on the render thread, at the end of a pass. Without a film, `look` is dropped.
     pub fn inspect(&self, look: impl FnOnce(&Film) + Send + 'static) {
-        self.send(RenderCommand::Inspect(Box::new(look)));
+        self.change(|render, _| render.watched("inspecting the film", |render| look(&render.film)));
     }
 
     /// Waits until the status changes, at most `timeout`, and returns it.
@@ -226,12 +226,24 @@ impl Progressive {
     }
 
     fn take(&self, take: impl FnOnce(Film, Status) + Send + 'static) {
-        self.send(RenderCommand::Take(Box::new(take)));
+        self.send(|worker| {
+            if let Some((film, status)) = worker.take() {
+                take(film, status);
+            }
+        });
+    }
+
+    /// Changes the render, once the samples that its renderer has deferred are in the film.
+    fn change(&self, change: impl FnOnce(&mut Render, &Arc<Mutex<Factory>>) + Send + 'static) {
+        self.send(|worker| {
+            worker.finish_samples();
+            worker.change(change);
+        });
     }
 
     /// Sends a command. A dead thread has reported its end in the status, so a failed send can be ignored.
-    fn send(&self, command: RenderCommand) {
-        let _ = self.commands.send(command);
+    fn send(&self, command: impl FnOnce(&mut Worker) + Send + 'static) {
+        let _ = self.commands.send(Box::new(command));
         self.act_here(false);
     }
 
@@ -246,7 +258,8 @@ impl Drop for Progressive {
     fn drop(&mut self) {
         if let Some(thread) = self.thread.take() {
             self.cancel.abandon();
-            self.send(RenderCommand::Finish);
+            // Without a sender, the thread ends.
+            self.commands = mpsc::channel().0;
             let _ = thread.join();
         }
     }

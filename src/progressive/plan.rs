@@ -1,6 +1,7 @@
 //! The plan of a progressive render: what to render, and when to stop.
 
 use crate::job::render::SAMPLE_LIMIT;
+use serde::Serialize;
 use std::ops::Range;
 use std::time::Duration;
 
@@ -105,7 +106,9 @@ impl Plan {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Reports name it in lower case, with underscores.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum EndReason {
     /// The film holds all samples of the plan.
     Samples,
@@ -115,18 +118,6 @@ pub enum EndReason {
     NoiseTarget,
     /// The user or another part of the program stopped it.
     Stopped,
-}
-
-impl EndReason {
-    /// The name used in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            EndReason::Samples => "samples",
-            EndReason::TimeLimit => "time_limit",
-            EndReason::NoiseTarget => "noise_target",
-            EndReason::Stopped => "stopped",
-        }
-    }
 }
 
 #[cfg(test)]

@@ -2,8 +2,7 @@
 
 use super::render::{Backend, Cancel, Render, dismiss};
 use super::shared::Shared;
-use super::{EndReason, Factory, Phase, Plan, RenderRequest, Status, View};
-use crate::backends::BackendChoice;
+use super::{Factory, Phase, RenderRequest, Status, View};
 use crate::film::Film;
 use crate::job::render::RenderError;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -11,24 +10,11 @@ use std::sync::mpsc::{Receiver, TryRecvError};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-/// Requests from [`super::Progressive`] to the render thread.
-pub(super) enum RenderCommand {
-    Start { run: u64, request: Box<RenderRequest>, cancel: Arc<Cancel> },
-    Abandon,
-    Pause,
-    Resume,
-    Stop,
-    Switch(BackendChoice),
-    SetPlan(Plan),
-    Inspect(Box<dyn FnOnce(&Film) + Send>),
-    Look,
-    SetView(View),
-    Take(Box<dyn FnOnce(Film, Status) + Send>),
-    Finish,
-}
+/// A request of [`super::Progressive`], carried out between two passes.
+pub(super) type Command = Box<dyn FnOnce(&mut Worker) + Send>;
 
 pub(super) struct Worker {
-    commands: Receiver<RenderCommand>,
+    commands: Receiver<Command>,
     shared: Arc<Shared>,
     factory: Arc<Mutex<Factory>>,
     backend: Option<Backend>,
@@ -37,7 +23,7 @@ pub(super) struct Worker {
 }
 
 impl Worker {
-    pub(super) fn new(commands: Receiver<RenderCommand>, shared: Arc<Shared>, factory: Factory) -> Self {
+    pub(super) fn new(commands: Receiver<Command>, shared: Arc<Shared>, factory: Factory) -> Self {
         let factory = Arc::new(Mutex::new(factory));
         Worker { commands, shared, factory, backend: None, render: None, view: View::Picture }
     }
@@ -63,9 +49,9 @@ impl Worker {
             self.commands.recv().map_err(TryRecvError::from)
         };
         match received {
-            Ok(RenderCommand::Finish) | Err(TryRecvError::Disconnected) => return false,
-            Ok(command) => self.obey(command),
+            Ok(command) => command(self),
             Err(TryRecvError::Empty) => self.step(),
+            Err(TryRecvError::Disconnected) => return false,
         }
         self.show();
         true
@@ -74,7 +60,7 @@ impl Worker {
     /// Obeys what has been sent, and renders a pass if `renders`, on the caller's thread.
     pub(super) fn act(&mut self, renders: bool) {
         while let Ok(command) = self.commands.try_recv() {
-            self.obey(command);
+            command(self);
         }
         if renders && self.render.as_ref().is_some_and(Render::is_working) {
             self.step();
@@ -88,43 +74,20 @@ impl Worker {
         }
     }
 
-    fn obey(&mut self, command: RenderCommand) {
-        match command {
-            RenderCommand::Start { run, request, cancel } => return self.start(run, *request, cancel),
-            RenderCommand::Abandon => return self.abandon(),
-            RenderCommand::SetView(view) => {
-                self.view = view;
-                self.render.iter_mut().for_each(|render| render.pictured_samples = None);
-                return;
-            }
-            RenderCommand::Take(take) => {
-                if let Some((film, status)) = self.take() {
-                    take(film, status);
-                }
-                return;
-            }
-            RenderCommand::Look | RenderCommand::SetPlan(_) => {}
-            _ => self.finish_samples(),
+    /// Changes the render, if there is one.
+    pub(super) fn change(&mut self, change: impl FnOnce(&mut Render, &Arc<Mutex<Factory>>)) {
+        if let Some(render) = &mut self.render {
+            change(render, &self.factory);
+            self.shared.publish(&render.status);
         }
-        let Some(render) = &mut self.render else { return };
-        match command {
-            RenderCommand::Pause if render.is_working() => render.status.phase = Phase::Paused,
-            RenderCommand::Resume => match render.status.phase {
-                Phase::Paused | Phase::Done(EndReason::Stopped) => render.resume(),
-                _ => {}
-            },
-            RenderCommand::Stop => render.stop(),
-            RenderCommand::Switch(choice) => render.switch(choice, &self.factory),
-            RenderCommand::SetPlan(plan) => render.set_plan(plan),
-            RenderCommand::Inspect(look) => {
-                render.watched("inspecting the film", |render| look(&render.film));
-            }
-            _ => {}
-        }
-        self.shared.publish(&render.status);
     }
 
-    fn start(&mut self, run: u64, request: RenderRequest, cancel: Arc<Cancel>) {
+    pub(super) fn set_view(&mut self, view: View) {
+        self.view = view;
+        self.change(|render, _| render.pictured_samples = None);
+    }
+
+    pub(super) fn start(&mut self, run: u64, request: RenderRequest, cancel: Arc<Cancel>) {
         // Drop the old film before the new one is made, so that both need not fit into memory.
         self.render = None;
         let RenderRequest { job, backend: choice, renderer, plan, film } = request;
@@ -147,7 +110,7 @@ impl Worker {
     }
 
     /// Adds the renderer's deferred samples, before the film is read or another renderer continues it.
-    fn finish_samples(&mut self) {
+    pub(super) fn finish_samples(&mut self) {
         let (Some(render), Some((_, renderer))) = (&mut self.render, &mut self.backend) else { return };
         let begin = Instant::now();
         let outcome = render.finish_samples(renderer.as_mut());
@@ -166,7 +129,7 @@ impl Worker {
         }
     }
 
-    fn take(&mut self) -> Option<(Film, Status)> {
+    pub(super) fn take(&mut self) -> Option<(Film, Status)> {
         self.finish_samples();
         let Render { film, status, .. } = self.render.take()?;
         if !status.phase.is_over() {
@@ -175,7 +138,7 @@ impl Worker {
         Some((film, status))
     }
 
-    fn abandon(&mut self) {
+    pub(super) fn abandon(&mut self) {
         if let Some(render) = self.render.take() {
             self.shared.publish(&Status { phase: Phase::Idle, ..render.status });
         }

@@ -115,7 +115,7 @@ impl Renderer for CpuRenderer {
         self.prepared = Some(match self.packets {
             Some((isa, lanes)) => {
                 let prepared = self.renewed(single.zip(before), job, cancel)?;
-                self.messages = prepared.warning().cloned().into_iter().collect();
+                self.messages = prepared.warning.clone().into_iter().collect();
                 self.rebuild.note_prepared(&prepared);
                 let wanted = self.wanted_parts(&prepared.features);
                 let kernel = kernels::kernel(isa, lanes, wanted).ok_or_else(|| RenderError::Backend {

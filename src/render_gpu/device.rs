@@ -194,18 +194,6 @@ impl Gpu {
         .map_err(|reason| format!("cannot create a buffer of {size} bytes for {label}: {reason}"))
     }
 
-    /// Creates a buffer with the contents `data`.
-    pub fn filled(
-        &self,
-        label: &str,
-        data: &[u8],
-        usage: wgpu::BufferUsages,
-    ) -> Result<wgpu::Buffer, String> {
-        let buffer = self.buffer(label, data.len() as u64, usage | wgpu::BufferUsages::COPY_DST)?;
-        self.queue.write_buffer(&buffer, 0, data);
-        Ok(buffer)
-    }
-
     /// Creates a bind group that binds whole buffers to the bindings `0 ..`.
     pub fn bind(&self, layout: &wgpu::BindGroupLayout, buffers: &[&wgpu::Buffer]) -> wgpu::BindGroup {
         let entries: Vec<_> = buffers
@@ -236,7 +224,9 @@ impl Gpu {
     ) -> Result<bool, String> {
         loop {
             let begin = Instant::now();
-            let polled = self.poll(submission);
+            let submission_index = Some(submission.clone());
+            let polled =
+                self.device.poll(wgpu::PollType::Wait { submission_index, timeout: Some(POLL_INTERVAL) });
             self.faults.check()?;
             let mut silence = self.silence();
             let is_over = match polled {
@@ -257,14 +247,6 @@ impl Gpu {
                 return Ok(false);
             }
         }
-    }
-
-    /// Waits briefly.
-    fn poll(&self, submission: &wgpu::SubmissionIndex) -> Result<wgpu::PollStatus, wgpu::PollError> {
-        self.device.poll(wgpu::PollType::Wait {
-            submission_index: Some(submission.clone()),
-            timeout: Some(POLL_INTERVAL),
-        })
     }
 }
 

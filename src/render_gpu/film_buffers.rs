@@ -45,6 +45,7 @@ struct Readback {
 
 /// The buffers of a film, and which samples they contain.
 pub struct FilmBuffers {
+    /// Width, height and limit.
     shape: (u32, u32, u64),
     /// The slabs, from the top of the picture down.
     pub slabs: Vec<Slab>,
@@ -62,10 +63,6 @@ pub struct FilmBuffers {
     readback_took: Duration,
     /// Total time that the host spent adding sums.
     pub readbacks_took: Duration,
-}
-
-fn shape(settings: &RenderSettings, limit: u64) -> (u32, u32, u64) {
-    (settings.width, settings.height, limit)
 }
 
 impl FilmBuffers {
@@ -108,7 +105,7 @@ impl FilmBuffers {
             first_row += row_count;
         }
         Ok(FilmBuffers {
-            shape: shape(settings, limit),
+            shape: (width, height, limit),
             slabs,
             parameters,
             blocks,
@@ -125,7 +122,7 @@ impl FilmBuffers {
 
     /// Whether these buffers fit a film with these settings and this limit.
     pub fn fit(&self, settings: &RenderSettings, limit: u64) -> bool {
-        self.shape == shape(settings, limit)
+        self.shape == (settings.width, settings.height, limit)
     }
 
     /// Returns an error if any of these samples are in `film` or on the device.

@@ -3,8 +3,7 @@
 use super::film_buffers::FilmBuffers;
 use super::kernel::Kernel;
 use super::layout::{GpuJob, WORKGROUP_SIZE, tile_size};
-use super::scene::SceneData;
-use super::scene::{ITERATION_LIMIT, iterations_over_lists};
+use super::scene::{ITERATION_LIMIT, SceneData, iterations_over_lists};
 use super::{GpuRenderer, failed};
 use crate::job::render::{RenderError, RenderJob};
 use crate::kernel::{Features, RECORD_COLUMNS, words_of};
@@ -76,7 +75,7 @@ impl GpuRenderer {
         let features = self.features(&scene.prepared);
         self.check_lists(&features, &scene.prepared).map_err(failed)?;
         self.kernels.begin(&self.gpu, features);
-        self.messages.extend(scene.prepared.warning().cloned());
+        self.messages.extend(scene.prepared.warning.clone());
         let film = self.film_buffers(job, old_film).map_err(failed)?;
         self.reserve_suspended(job).map_err(failed)?;
         let kernel = self.kernels.get(&self.gpu, features, cancel)?;
@@ -140,19 +139,13 @@ impl GpuRenderer {
         let (width, height) = (job.settings().width, job.settings().height);
         let [tile_width, tile_height] = tile_size(width, height);
         let tiles = u64::from(width.div_ceil(tile_width)) * u64::from(height.div_ceil(tile_height));
-        let limit = self.binding_limit();
-        self.dispatches.reserve_suspended(&self.gpu, tiles * u64::from(WORKGROUP_SIZE), limit)
+        let threads = tiles * u64::from(WORKGROUP_SIZE);
+        self.dispatches.reserve_suspended(&self.gpu, threads, self.binding_limit())
     }
 
     /// Size limit of a buffer binding in a shader, in bytes.
     fn binding_limit(&self) -> u64 {
         self.gpu.adapter.storage_binding_limit.min(self.gpu.adapter.buffer_limit)
-    }
-
-    /// Size limit of a film in one buffer, in bytes.
-    fn film_limit(&self) -> u64 {
-        let limit = self.binding_limit();
-        self.options.film_limit.map_or(limit, |wanted| wanted.min(limit))
     }
 
     fn upload(&self, prepared: PreparedScene<f32>, scene: SceneData) -> Result<SceneOnDevice, String> {
@@ -171,9 +164,11 @@ impl GpuRenderer {
                 "job" => wgpu::BufferUsages::UNIFORM,
                 _ => wgpu::BufferUsages::STORAGE,
             };
-            gpu.filled(label, data, usage)
+            let buffer = gpu.buffer(label, data.len() as u64, usage | wgpu::BufferUsages::COPY_DST)?;
+            gpu.queue.write_buffer(&buffer, 0, data);
+            Ok(buffer)
         };
-        let buffers = contents.iter().map(filled).collect::<Result<Vec<_>, _>>()?;
+        let buffers = contents.iter().map(filled).collect::<Result<Vec<_>, String>>()?;
         let group = gpu.bind(&gpu.layouts.job, &buffers.iter().collect::<Vec<_>>());
         let [job_buffer, _, anchored_buffer, rows_buffer, _] = <[wgpu::Buffer; 5]>::try_from(buffers)
             .map_err(|buffers| format!("{} buffers instead of 5", buffers.len()))?;
@@ -189,7 +184,7 @@ impl GpuRenderer {
 
     /// Empty buffers for a film of `job`; reuses the old ones if they fit.
     fn film_buffers(&self, job: &RenderJob, old: Option<FilmBuffers>) -> Result<FilmBuffers, String> {
-        let limit = self.film_limit();
+        let limit = self.binding_limit().min(self.options.film_limit.unwrap_or(u64::MAX));
         // The device may not have room for both.
         let Some(mut film) = old.filter(|film| film.fit(job.settings(), limit)) else {
             return FilmBuffers::new(&self.gpu, job.settings(), limit);

@@ -59,10 +59,8 @@ pub fn check(what: impl FnOnce() -> String, bytes: u64, remedy: &'static str) ->
 
 fn check_against(what: String, bytes: u64, room: Room, remedy: &'static str) -> Result<(), MemoryError> {
     let needed_bytes = bytes.saturating_add(BASE_BYTES);
-    if needed_bytes > room.bytes {
-        return Err(MemoryError { what, needed_bytes, room, remedy });
-    }
-    Ok(())
+    let fits = needed_bytes <= room.bytes;
+    fits.then_some(()).ok_or(MemoryError { what, needed_bytes, room, remedy })
 }
 
 /// `count` zeros. The system provides each page when it is first written to, so this takes no time.
@@ -135,6 +133,7 @@ fn free_of_machine() -> Option<u64> {
 }
 
 /// The value of a line such as `MemAvailable:  2048 kB` of a file in `/proc`, in bytes.
+#[cfg(any(test, not(any(windows, target_vendor = "apple", target_family = "wasm"))))]
 fn in_bytes(text: &str, name: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)

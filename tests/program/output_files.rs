@@ -123,7 +123,7 @@ fn foreign_pictures_have_no_description() {
     }
     exr::prelude::write_rgb_file(&path, 3, 2, |_, _| (0.1_f32, 0.2_f32, 0.3_f32)).unwrap();
     assert!(is_foreign(&path));
-    for bytes in [&b""[..], b"P6", b"P6\n# x: y\n", b"text"] {
+    for bytes in [&b"P6"[..], b"P6\n# x: y\n", b"text"] {
         fs::write(&path, bytes).unwrap();
         assert!(is_foreign(&path));
     }

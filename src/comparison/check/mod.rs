@@ -36,7 +36,7 @@ use crate::system::console;
 use crate::system::files::{STANDARD, make_directory, replace_file, write_text};
 use crate::system::terminal::{Display, ProgressChoice, print_beside};
 use anyhow::{Context, Result, ensure};
-use image::{ImageFormat, RgbImage};
+use image::{ImageError, ImageFormat, RgbImage};
 use serde_json::json;
 use std::io::{self, IsTerminal, stderr};
 use std::path::{Path, PathBuf};
@@ -58,14 +58,26 @@ pub fn run(options: &CheckOptions) -> Result<ExitCode> {
     let [picture] = options.pictures.as_slice() else { return each(options) };
     let mine = Mine::read(picture)?;
     let finding = judged(&mine, options, &AtomicBool::new(false))?;
-    for (path, pixels) in files.iter().zip(pictures(&mine, &finding)) {
-        let image = RgbImage::from_raw(mine.width, mine.height, pixels.into_iter().flatten().collect());
-        let image = image.context("a picture has another size than its pixels")?;
-        replace_file(path, |writer| image.write_to(writer, ImageFormat::Png).map_err(io::Error::other))?;
-    }
+    // The verdict is worth more than the pictures.
+    let wrote = write_pictures(&files, &mine, &finding);
+    let files = if wrote.is_ok() { files } else { Vec::new() };
     let text = text(picture, &mine, &finding, &files, options.stage.is_some());
     deliver(options.json.as_deref(), &text, 1, &figures(picture, &mine, &finding, &files))?;
-    Ok(finding.answer(&mine).verdict().exit_code())
+    wrote.map(|()| finding.answer(&mine).verdict().exit_code())
+}
+
+fn write_pictures(files: &[PathBuf], mine: &Mine, finding: &Finding) -> Result<()> {
+    for (path, pixels) in files.iter().zip(pictures(mine, finding)) {
+        let image = RgbImage::from_raw(mine.width, mine.height, pixels.into_iter().flatten().collect());
+        let image = image.context("a picture has another size than its pixels")?;
+        replace_file(path, |writer| {
+            image.write_to(writer, ImageFormat::Png).map_err(|error| match error {
+                ImageError::IoError(error) => error,
+                other => io::Error::other(other),
+            })
+        })?;
+    }
+    Ok(())
 }
 
 /// Time between two lines of progress where there is no terminal.

@@ -116,6 +116,7 @@ fn choose<'a>(layers: &'a [Layer], image: &FlatImage, name: Option<&str>) -> Res
     let mut found = layers.iter().filter(|layer| layer.name == name.unwrap_or_default());
     match (layers, name, found.next(), found.next()) {
         ([only], None, ..) | (_, Some(_), Some(only), _) | (_, None, Some(only), None) => Ok(only),
+        (_, Some(name), ..) if names(layers).is_empty() => bail!("it has no layer {name:?}; name none"),
         (_, Some(name), ..) => {
             bail!("it has no layer {name:?}; choose one of {} after FILE:", names(layers))
         }

@@ -60,7 +60,7 @@ impl OutputFormat {
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         OutputFormat::from_str(&ending, true).map_err(|_| {
             anyhow!(
-                "cannot tell the picture format of {}; let the name end in one of {}, or add --format",
+                "cannot tell the picture format of {}; let the name end in one of {}",
                 path.shown(),
                 OutputFormat::ALL.map(OutputFormat::ending).join(", ")
             )
@@ -121,6 +121,7 @@ pub fn read_description(path: &Path) -> Result<Description> {
         |reason| anyhow!("cannot read {}: {reason}; check whether the file is complete", path.shown());
     let start = start_of(&mut reader)?;
     let found = match start.as_slice() {
+        [] => return Err(anyhow!("{} is empty; render it again", path.shown())),
         [0x89, b'P', b'N', b'G', ..] => png::read_description(reader).map_err(unreadable)?,
         start if start.starts_with(&checkpoint::MAGIC) => checkpoint::read_description(reader, path)?,
         _ => None,

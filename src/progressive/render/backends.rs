@@ -1,12 +1,11 @@
 //! The backends of a render: preparing one, switching to another, and falling back after a failure.
 
-use super::{Cancel, Render};
-use crate::backends::{BackendChoice, close};
-use crate::job::render::{RenderError, RenderJob, Renderer};
-use crate::progressive::{Factory, Phase};
+use super::Render;
+use crate::backends::{BackendChoice, Factory, Pending, close, make};
+use crate::job::render::{RenderError, Renderer};
+use crate::progressive::Phase;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::mpsc::{self, Receiver, TryRecvError};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// A renderer and the choice it was made from.
@@ -28,46 +27,6 @@ pub fn dismiss(backend: Option<Backend>) {
     }
 }
 
-fn make(factory: &Mutex<Factory>, choice: &BackendChoice) -> Result<Box<dyn Renderer>, RenderError> {
-    let made = factory.lock().unwrap_or_else(PoisonError::into_inner)(choice);
-    made.map_err(|error| RenderError::Backend { backend: choice.name(), reason: error.to_string() })
-}
-
-/// A prepared renderer and the time it took to prepare.
-type Prepared = Result<(Box<dyn Renderer>, Duration), RenderError>;
-
-/// A backend that is prepared on its own thread and takes over when it is ready, while the old one continues.
-pub(super) struct Pending {
-    choice: BackendChoice,
-    /// Delivers one result.
-    outcome: Receiver<Prepared>,
-}
-
-impl Pending {
-    /// Starts to prepare `job`; `None` if the system cannot start a thread.
-    fn start(
-        choice: BackendChoice,
-        job: &RenderJob,
-        factory: &Arc<Mutex<Factory>>,
-        cancel: &Arc<Cancel>,
-    ) -> Option<Self> {
-        let (sender, outcome) = mpsc::channel();
-        let (wanted, job) = (choice.clone(), job.clone());
-        let (factory, cancel) = (Arc::clone(factory), Arc::clone(cancel));
-        let prepare = move || {
-            let begin = Instant::now();
-            let ready = make(&factory, &wanted).and_then(|mut renderer| {
-                renderer.prepare(&job, &cancel.pass)?;
-                Ok((renderer, begin.elapsed()))
-            });
-            // If another backend was chosen meanwhile, there is no receiver.
-            let _ = sender.send(ready);
-        };
-        std::thread::Builder::new().name("prepare".to_owned()).spawn(prepare).ok()?;
-        Some(Pending { choice, outcome })
-    }
-}
-
 impl Render {
     /// Switches to another backend once it is ready. Until then the current one continues.
     pub fn switch(&mut self, choice: BackendChoice, factory: &Arc<Mutex<Factory>>) {
@@ -76,7 +35,9 @@ impl Render {
         }
         self.pending = None;
         if choice != self.choice && self.is_prepared {
-            self.pending = Pending::start(choice.clone(), &self.job, factory, &self.cancel);
+            let (job, cancel) = (self.job.clone(), Arc::clone(&self.cancel));
+            let prepare = move |renderer: &mut dyn Renderer| renderer.prepare(&job, &cancel.pass);
+            self.pending = Pending::start(choice.clone(), factory, prepare);
         }
         if self.pending.is_none() {
             self.change_backend(choice);
@@ -85,17 +46,8 @@ impl Render {
 
     /// Switches to the pending backend once it is ready.
     pub(super) fn take_over(&mut self, backend: &mut Option<Backend>) {
-        let Some(pending) = &self.pending else { return };
-        let outcome = match pending.outcome.try_recv() {
-            Err(TryRecvError::Empty) => return,
-            Err(TryRecvError::Disconnected) => {
-                let reason = "its preparation ended by a panic".to_owned();
-                Err(RenderError::Backend { backend: pending.choice.name(), reason })
-            }
-            Ok(outcome) => outcome,
-        };
-        let choice = pending.choice.clone();
-        self.pending = None;
+        let Some(outcome) = self.pending.as_ref().and_then(Pending::outcome) else { return };
+        let Some(Pending { choice, .. }) = self.pending.take() else { return };
         match outcome {
             Ok((mut renderer, took)) => {
                 if let Some((_, old)) = backend

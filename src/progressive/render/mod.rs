@@ -9,11 +9,10 @@ use super::{
     EndReason, Factory, HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, NoiseOf, PassSizer, Phase, Plan, Status,
     View,
 };
-use crate::backends::BackendChoice;
+use crate::backends::{BackendChoice, Pending};
 use crate::denoise;
 use crate::film::{Film, HALVES, PixelSum, SampleRanges};
 use crate::job::render::{Control, Outcome, RenderError, RenderJob, Renderer, Stats};
-use backends::Pending;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -130,6 +129,12 @@ impl Render {
             }
         }
         samples.count()
+    }
+
+    pub fn pause(&mut self) {
+        if self.is_working() {
+            self.status.phase = Phase::Paused;
+        }
     }
 
     pub fn resume(&mut self) {

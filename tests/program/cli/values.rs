@@ -34,6 +34,28 @@ fn bad_values_are_refused_with_value_and_limit() {
     }
 }
 
+#[test]
+fn files_of_another_kind_are_refused_with_a_remedy() {
+    let directory = temp();
+    let camera = "[camera]\nlook_from = [0.0, 0.0, 3.0]\nlook_at = [0.0, 0.0, 0.0]\nvfov_degrees = 40.0\n";
+    let table = |row: &str| format!("spheres = '''\nx,y,z,radius,red,green,blue\n{row}\n'''\n{camera}");
+    let wrong = |arguments: &[&str], parts: &[&str]| {
+        crate::common::program::refused(directory.path(), arguments, parts)
+    };
+    for (scene, parts) in [
+        ("{\"camera\": {}}", &["s.toml:1:1: ", "is TOML", "--save-scene"]),
+        (&format!("{camera}vup = {{ x = 1.0 }}\n"), &["s.toml:5:", "table", "a list"]),
+        (&format!("spheres = \"\"\n{camera}"), &["s.toml:1: ", "cannot read", "name"]),
+        (&table("0,0,0,1,1,1,\"1"), &["s.toml:3: ", "quote", "close it"]),
+        (&table(&"0,".repeat(99)), &["s.toml:3: ", "7 values", "32 or more"]),
+    ] {
+        std::fs::write(directory.path().join("s.toml"), scene).unwrap();
+        wrong(&["--batch", "--scene", "s.toml", "--out", "a.png"], parts);
+    }
+    std::fs::write(directory.path().join("e.exr"), "").unwrap();
+    wrong(&["info", "e.exr"], &["e.exr is empty"]);
+}
+
 /// What the user gave may be as long as a file, a message may not.
 #[test]
 fn messages_are_short_however_long_the_input() {

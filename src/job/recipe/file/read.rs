@@ -9,7 +9,7 @@ use crate::scene::{Camera, Material, Scene, Sky, missing_material};
 use crate::stages::Rules;
 use crate::system::files::{self, ShownPath};
 use crate::system::memory;
-use anyhow::anyhow;
+use anyhow::{Result, anyhow};
 use glam::DVec3;
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Error as _, MapAccess, SeqAccess, Visitor};
@@ -29,58 +29,70 @@ const FILE_LIMIT: u64 = 1 << 30;
 /// need the most, and with the shortest values.
 const VALUE_BYTES: u64 = 260;
 
-/// An error at this byte of the text, with line and column in characters from 1.
-fn error_at(text: &str, name: &str, byte: usize, reason: &str) -> anyhow::Error {
-    let before = text.get(..byte).unwrap_or(text);
-    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-    let (line, column) = (1 + before.matches('\n').count(), 1 + before[line_start..].chars().count());
-    anyhow!("{name}:{line}:{column}: {reason}")
+/// The text of a scene file.
+struct Source<'a> {
+    text: &'a str,
+    /// How messages name it.
+    name: &'a str,
+    /// Where its table is, if it names one.
+    directory: Option<&'a Path>,
+}
+
+impl<'a> Source<'a> {
+    /// The line of a byte, from 1, and the text before the byte on that line.
+    fn line_at(&self, byte: usize) -> (usize, &'a str) {
+        let before = self.text.get(..byte).unwrap_or(self.text);
+        (1 + before.matches('\n').count(), before.rsplit('\n').next().unwrap_or_default())
+    }
+
+    /// An error at this place, with line and column in characters from 1.
+    fn refuse(&self, place: Range<usize>, reason: impl Display) -> anyhow::Error {
+        let (line, before) = self.line_at(place.start);
+        anyhow!("{}:{line}:{}: {reason}", self.name, 1 + before.chars().count())
+    }
 }
 
 /// Reads a scene file. The recipe is named after the file, without its extension.
 ///
 /// # Errors
 /// If the file cannot be read or is malformed, or if no picture can be made from it; with the line and what to do.
-pub fn load(path: &Path) -> anyhow::Result<Recipe> {
+pub fn load(path: &Path) -> Result<Recipe> {
     let label = path.shown();
     let bytes = files::read(path, "a scene file", FILE_LIMIT)?;
     let text = text_of(path, bytes)?;
     let stem = path.file_stem().map_or_else(|| label.clone(), |stem| stem.to_string_lossy().into_owned());
     let directory = path.parent().unwrap_or(Path::new(""));
-    Ok(Recipe { name: stem, ..parse_in(Some(directory), &text, &label)? })
+    let source = Source { text: &text, name: &label, directory: Some(directory) };
+    Ok(Recipe { name: stem, ..read(&source)? })
 }
 
 /// Reads the text of a scene file. `name` becomes the name of the recipe, and messages start with it.
 ///
 /// # Errors
 /// If the text is malformed, or if no picture can be made from it; with the line and what to do.
-pub fn parse(text: &str, name: &str) -> anyhow::Result<Recipe> {
-    parse_in(None, text, name)
+pub fn parse(text: &str, name: &str) -> Result<Recipe> {
+    read(&Source { text, name, directory: None })
 }
 
-/// As [`parse`]. Tables are in `directory`.
-fn parse_in(directory: Option<&Path>, text: &str, name: &str) -> anyhow::Result<Recipe> {
+fn read(source: &Source) -> Result<Recipe> {
+    let Source { text, name, .. } = source;
     let outside_tables = text.split("'''").step_by(2).flat_map(str::bytes);
     let values = outside_tables.filter(|byte| b",=[{\n".contains(byte)).count() as u64;
     let bytes = text.len() as u64 + VALUE_BYTES * values;
     let remedy = "use a scene of fewer spheres, or close other programs";
     memory::check(|| format!("reading {name}"), bytes, remedy)?;
-    let raw: RawFile = toml::from_str(text).map_err(|error| {
-        let place = error.span().unwrap_or_default().start;
+    let raw = toml::from_str(text).map_err(|error| {
+        let place = error.span().unwrap_or_default();
         let mut reason = toml_message(error);
-        if has_decimal_comma(text, place) {
+        if has_decimal_comma(text, place.start) {
             reason += "; write a point in a number, not a comma";
         }
-        error_at(text, name, place, &reason)
+        if text.trim_start().starts_with(['{', '<', '%', '\0']) {
+            reason += "; a scene file is TOML, as --save-scene FILE.toml writes it";
+        }
+        source.refuse(place, reason)
     })?;
-    let recipe = recipe_of(raw, name, |place, value| {
-        let line = 1 + text[..place.start].matches('\n').count();
-        Table::open(value, line, name, directory)
-    });
-    recipe.map_err(|refusal| match refusal {
-        Refusal::Value(place, reason) => error_at(text, name, place.start, &reason),
-        Refusal::Table(error) => error,
-    })
+    source.recipe(raw)
 }
 
 /// Whether the line at `place` has a comma between two digits outside a list.
@@ -99,6 +111,9 @@ fn toml_message(mut error: toml::de::Error) -> String {
         ("missing field", "missing key"),
         ("duplicate field", "duplicate key"),
         ("unknown variant", "unknown value"),
+        (" as i128", ""),
+        ("invalid type: map", "invalid type: table"),
+        ("expected a sequence", "expected a list"),
         ("expected i64", "expected a whole number"),
         ("expected f64", "expected a number"),
         ("\n", " "),
@@ -271,133 +286,173 @@ struct RawSettings {
     estimate_error: Option<Spanned<bool>>,
 }
 
-enum Refusal {
-    /// Where the text is wrong, and why.
-    Value(Range<usize>, String),
-    /// The whole message.
-    Table(anyhow::Error),
-}
-
-fn refuse(place: Range<usize>, reason: impl Display) -> Refusal {
-    Refusal::Value(place, reason.to_string())
-}
-
-/// Checks every value here, where its position in the text is known. `table` opens a table of spheres.
-fn recipe_of<'a>(
-    raw: RawFile<'a>,
-    name: &str,
-    table: impl FnOnce(Range<usize>, Cow<'a, str>) -> anyhow::Result<Table<'a>>,
-) -> Result<Recipe, Refusal> {
-    let scene = match raw.scene {
-        Some(scene) if raw.sky.is_some() || raw.materials.is_some() || raw.spheres.is_some() => {
-            let reason = "sky, materials and spheres cannot be combined with scene, which has its own; remove one of them";
-            return Err(refuse(scene.span(), reason));
-        }
-        Some(scene) => builtin_scene(&scene, raw.scene_mark.as_ref())?,
-        None => {
-            let (mut scene, mut index_of) =
-                painted_scene(sky_of(raw.sky)?, raw.materials.unwrap_or_default())?;
-            let place = raw.spheres.as_ref().map(Spanned::span).unwrap_or_default();
-            match raw.spheres.map(Spanned::into_inner) {
-                Some(RawSpheres::Listed(spheres)) => add_listed(spheres, &mut scene, &mut index_of)?,
-                Some(RawSpheres::Table(text)) => {
-                    let table = table(place, text).map_err(Refusal::Table)?;
-                    table.add_to(&mut scene, &mut index_of).map_err(Refusal::Table)?;
-                }
-                None => {}
+impl Source<'_> {
+    /// Checks every value here, where its position in the text is known.
+    fn recipe(&self, raw: RawFile) -> Result<Recipe> {
+        let scene = match raw.scene {
+            Some(scene) if raw.sky.is_some() || raw.materials.is_some() || raw.spheres.is_some() => {
+                let reason = "sky, materials and spheres cannot be combined with scene, which has its own; remove one of them";
+                return Err(self.refuse(scene.span(), reason));
             }
-            Arc::new(scene)
+            Some(scene) => self.builtin_scene(&scene, raw.scene_mark.as_ref())?,
+            None => {
+                let (mut scene, mut index_of) =
+                    self.painted_scene(self.sky(raw.sky)?, raw.materials.unwrap_or_default())?;
+                let place = raw.spheres.as_ref().map(Spanned::span).unwrap_or_default();
+                match raw.spheres.map(Spanned::into_inner) {
+                    Some(RawSpheres::Listed(spheres)) => {
+                        self.add_listed(spheres, &mut scene, &mut index_of)?
+                    }
+                    Some(RawSpheres::Table(text)) => {
+                        let (line, _) = self.line_at(place.start);
+                        let table = Table::open(text, line, self.name, self.directory)?;
+                        table.add_to(&mut scene, &mut index_of)?;
+                    }
+                    None => {}
+                }
+                Arc::new(scene)
+            }
+        };
+        if raw.camera.get_ref().frame.is_some() {
+            return Err(self.refuse(raw.camera.span(), "unknown key `frame` here; write it in [[keyframes]]"));
         }
-    };
-    if raw.camera.get_ref().frame.is_some() {
-        return Err(refuse(raw.camera.span(), "unknown key `frame` here; write it in [[keyframes]]"));
+        let camera = self.camera(&raw.camera, None)?;
+        let (default, own) = (RenderSettings::default(), raw.render);
+        if let Some(value) = own.estimate_error.filter(|value| !value.get_ref()) {
+            return Err(self.refuse(value.span(), "the error is always estimated; remove this line"));
+        }
+        Ok(Recipe {
+            name: self.name.to_owned(),
+            scene,
+            camera,
+            keyframes: self.keyframes(raw.keyframes, &camera)?,
+            settings: RenderSettings {
+                width: own.width.map_or(default.width, |Whole(pixels)| pixels as u32),
+                height: own.height.map_or(default.height, |Whole(pixels)| pixels as u32),
+                max_depth: own.max_depth.map_or(default.max_depth, |Whole(rays)| rays as u32),
+                sampler: own.sampler.unwrap_or(default.sampler),
+                seed: own.seed.map_or(default.seed, |Whole(seed)| seed as u32),
+            },
+            rules: raw.rules,
+            samples_per_pixel: own
+                .samples_per_pixel
+                .map_or(DEFAULT_SAMPLES_PER_PIXEL, |Whole(samples)| samples as u64),
+        })
     }
-    let camera = camera_of(&raw.camera, None)?;
-    let (default, own) = (RenderSettings::default(), raw.render);
-    if let Some(value) = own.estimate_error.filter(|value| !value.get_ref()) {
-        return Err(refuse(value.span(), "the error is always estimated; remove this line"));
-    }
-    Ok(Recipe {
-        name: name.to_owned(),
-        scene,
-        camera,
-        keyframes: keyframes_of(raw.keyframes, &camera)?,
-        settings: RenderSettings {
-            width: own.width.map_or(default.width, |Whole(pixels)| pixels as u32),
-            height: own.height.map_or(default.height, |Whole(pixels)| pixels as u32),
-            max_depth: own.max_depth.map_or(default.max_depth, |Whole(rays)| rays as u32),
-            sampler: own.sampler.unwrap_or(default.sampler),
-            seed: own.seed.map_or(default.seed, |Whole(seed)| seed as u32),
-        },
-        rules: raw.rules,
-        samples_per_pixel: own
-            .samples_per_pixel
-            .map_or(DEFAULT_SAMPLES_PER_PIXEL, |Whole(samples)| samples as u64),
-    })
-}
 
-/// The built-in scene of this name. Refused if its mark differs from that in the file.
-fn builtin_scene(name: &Spanned<String>, mark: Option<&Spanned<String>>) -> Result<Arc<Scene>, Refusal> {
-    let scene = Recipe::find(name.get_ref()).map_err(|error| refuse(name.span(), error))?.scene;
-    match mark {
-        Some(mark) if *mark.get_ref() != named::mark(&scene) => {
-            let reason = format!(
-                "the built-in scene {:?} has changed since this file was made; use the version that made it, or remove \
+    /// The built-in scene of this name. Refused if its mark differs from that in the file.
+    fn builtin_scene(&self, name: &Spanned<String>, mark: Option<&Spanned<String>>) -> Result<Arc<Scene>> {
+        let scene = Recipe::find(name.get_ref()).map_err(|error| self.refuse(name.span(), error))?.scene;
+        match mark {
+            Some(mark) if *mark.get_ref() != named::mark(&scene) => {
+                let reason = format!(
+                    "the built-in scene {:?} has changed since this file was made; use the version that made it, or remove \
                  scene_mark to use the current scene",
-                name.get_ref()
-            );
-            Err(refuse(mark.span(), reason))
+                    name.get_ref()
+                );
+                Err(self.refuse(mark.span(), reason))
+            }
+            _ => Ok(scene),
         }
-        _ => Ok(scene),
     }
-}
 
-fn sky_of(raw: Option<Spanned<RawSky>>) -> Result<Sky, Refusal> {
-    let mut sky = Sky::default();
-    if let Some(raw) = raw {
-        let RawSky { bottom, top } = raw.get_ref();
-        sky.bottom = bottom.map_or(sky.bottom, |Triple(colour)| colour);
-        sky.top = top.map_or(sky.top, |Triple(colour)| colour);
-        sky.validate().map_err(|error| refuse(raw.span(), error))?;
+    fn sky(&self, raw: Option<Spanned<RawSky>>) -> Result<Sky> {
+        let mut sky = Sky::default();
+        if let Some(raw) = raw {
+            let RawSky { bottom, top } = raw.get_ref();
+            sky.bottom = bottom.map_or(sky.bottom, |Triple(colour)| colour);
+            sky.top = top.map_or(sky.top, |Triple(colour)| colour);
+            sky.validate().map_err(|error| self.refuse(raw.span(), error))?;
+        }
+        Ok(sky)
     }
-    Ok(sky)
-}
 
-/// A scene without spheres, and the index of each of its materials.
-fn painted_scene(
-    sky: Sky,
-    materials: BTreeMap<Spanned<String>, Material>,
-) -> Result<(Scene, HashMap<String, usize>), Refusal> {
-    let mut scene = Scene { sky, ..Scene::default() };
-    // Restore the file's order; the map sorted them by name.
-    let mut named: Vec<_> = materials.into_iter().collect();
-    named.sort_by_key(|(name, _)| name.span().start);
-    let mut index_of = HashMap::with_capacity(named.len());
-    for (name, material) in named {
-        let place = name.span();
-        let name = name.into_inner();
-        material.validate(format_args!("materials.{name}")).map_err(|error| refuse(place, error))?;
-        index_of.insert(name.clone(), scene.add_material(name, material));
+    /// A scene without spheres, and the index of each of its materials.
+    fn painted_scene(
+        &self,
+        sky: Sky,
+        materials: BTreeMap<Spanned<String>, Material>,
+    ) -> Result<(Scene, HashMap<String, usize>)> {
+        let mut scene = Scene { sky, ..Scene::default() };
+        // Restore the file's order; the map sorted them by name.
+        let mut named: Vec<_> = materials.into_iter().collect();
+        named.sort_by_key(|(name, _)| name.span().start);
+        let mut index_of = HashMap::with_capacity(named.len());
+        for (name, material) in named {
+            let place = name.span();
+            let name = name.into_inner();
+            material.validate(format_args!("materials.{name}")).map_err(|error| self.refuse(place, error))?;
+            index_of.insert(name.clone(), scene.add_material(name, material));
+        }
+        Ok((scene, index_of))
     }
-    Ok((scene, index_of))
-}
 
-fn add_listed(
-    spheres: Vec<Spanned<RawSphere>>,
-    scene: &mut Scene,
-    index_of: &mut HashMap<String, usize>,
-) -> Result<(), Refusal> {
-    scene.spheres.reserve_exact(spheres.len());
-    for (index, sphere) in spheres.into_iter().enumerate() {
-        let place = sphere.span();
-        let RawSphere { center: Triple(center), radius, material } = sphere.into_inner();
-        let material =
-            material_of(material, index, scene, index_of).map_err(|reason| refuse(place.clone(), reason))?;
-        scene.add_sphere(center, radius, material);
-        let validated = scene.spheres[index].validate(index, scene.materials.len());
-        validated.map_err(|error| refuse(place, error))?;
+    fn add_listed(
+        &self,
+        spheres: Vec<Spanned<RawSphere>>,
+        scene: &mut Scene,
+        index_of: &mut HashMap<String, usize>,
+    ) -> Result<()> {
+        scene.spheres.reserve_exact(spheres.len());
+        for (index, sphere) in spheres.into_iter().enumerate() {
+            let place = sphere.span();
+            let RawSphere { center: Triple(center), radius, material } = sphere.into_inner();
+            let material = material_of(material, index, scene, index_of)
+                .map_err(|reason| self.refuse(place.clone(), reason))?;
+            scene.add_sphere(center, radius, material);
+            let validated = scene.spheres[index].validate(index, scene.materials.len());
+            validated.map_err(|error| self.refuse(place, error))?;
+        }
+        Ok(())
     }
-    Ok(())
+
+    /// The camera. `base` has the values of missing keys; without it, some keys are required.
+    fn camera(&self, raw: &Spanned<RawCamera>, base: Option<&Camera>) -> Result<Camera> {
+        let (place, raw) = (raw.span(), raw.get_ref());
+        let missing = match raw {
+            _ if base.is_some() => None,
+            RawCamera { look_from: None, .. } => Some("look_from"),
+            RawCamera { look_at: None, .. } => Some("look_at"),
+            RawCamera { vfov_degrees: None, .. } => Some("vfov_degrees"),
+            _ => None,
+        };
+        if let Some(key) = missing {
+            return Err(self.refuse(place, format!("missing key `{key}`")));
+        }
+        let base = base.unwrap_or(&Camera::BOOK);
+        let vector = |own: Option<Triple>, base: DVec3| own.map_or(base, |Triple(vector)| vector);
+        let camera = Camera {
+            look_from: vector(raw.look_from, base.look_from),
+            look_at: vector(raw.look_at, base.look_at),
+            vup: vector(raw.vup, base.vup),
+            vfov_degrees: raw.vfov_degrees.unwrap_or(base.vfov_degrees),
+            defocus_angle_degrees: raw.defocus_angle_degrees.unwrap_or(base.defocus_angle_degrees),
+            focus_distance: raw.focus_distance,
+        };
+        camera.validate().map_err(|error| self.refuse(place, error))?;
+        Ok(camera)
+    }
+
+    /// The keyframes, completed from `camera`.
+    fn keyframes(&self, raw: Vec<Spanned<RawCamera>>, camera: &Camera) -> Result<Vec<Keyframe>> {
+        let mut keyframes: Vec<Keyframe> = Vec::with_capacity(raw.len());
+        for raw in raw {
+            let Some(Whole(frame)) = raw.get_ref().frame else {
+                return Err(self.refuse(raw.span(), "missing key `frame`"));
+            };
+            let frame = frame as u32;
+            if let Some(before) = keyframes.last().filter(|before| before.frame >= frame) {
+                let reason = format!(
+                    "frame is {frame}, but the keyframe before it has {}; list keyframes in ascending order, each frame \
+                 once",
+                    before.frame
+                );
+                return Err(self.refuse(raw.span(), reason));
+            }
+            keyframes.push(Keyframe { frame, camera: self.camera(&raw, Some(camera))? });
+        }
+        Ok(keyframes)
+    }
 }
 
 /// The index of a sphere's material.
@@ -423,52 +478,4 @@ fn material_of(
              0.8] }}"
         )),
     }
-}
-
-/// The camera. `base` has the values of missing keys; without it, some keys are required.
-fn camera_of(raw: &Spanned<RawCamera>, base: Option<&Camera>) -> Result<Camera, Refusal> {
-    let (place, raw) = (raw.span(), raw.get_ref());
-    let missing = match raw {
-        _ if base.is_some() => None,
-        RawCamera { look_from: None, .. } => Some("look_from"),
-        RawCamera { look_at: None, .. } => Some("look_at"),
-        RawCamera { vfov_degrees: None, .. } => Some("vfov_degrees"),
-        _ => None,
-    };
-    if let Some(key) = missing {
-        return Err(refuse(place, format!("missing key `{key}`")));
-    }
-    let base = base.unwrap_or(&Camera::BOOK);
-    let vector = |own: Option<Triple>, base: DVec3| own.map_or(base, |Triple(vector)| vector);
-    let camera = Camera {
-        look_from: vector(raw.look_from, base.look_from),
-        look_at: vector(raw.look_at, base.look_at),
-        vup: vector(raw.vup, base.vup),
-        vfov_degrees: raw.vfov_degrees.unwrap_or(base.vfov_degrees),
-        defocus_angle_degrees: raw.defocus_angle_degrees.unwrap_or(base.defocus_angle_degrees),
-        focus_distance: raw.focus_distance,
-    };
-    camera.validate().map_err(|error| refuse(place, error))?;
-    Ok(camera)
-}
-
-/// The keyframes, completed from `camera`.
-fn keyframes_of(raw: Vec<Spanned<RawCamera>>, camera: &Camera) -> Result<Vec<Keyframe>, Refusal> {
-    let mut keyframes: Vec<Keyframe> = Vec::with_capacity(raw.len());
-    for raw in raw {
-        let Some(Whole(frame)) = raw.get_ref().frame else {
-            return Err(refuse(raw.span(), "missing key `frame`"));
-        };
-        let frame = frame as u32;
-        if let Some(before) = keyframes.last().filter(|before| before.frame >= frame) {
-            let reason = format!(
-                "frame is {frame}, but the keyframe before it has {}; list keyframes in ascending order, each frame \
-                 once",
-                before.frame
-            );
-            return Err(refuse(raw.span(), reason));
-        }
-        keyframes.push(Keyframe { frame, camera: camera_of(&raw, Some(camera))? });
-    }
-    Ok(keyframes)
 }

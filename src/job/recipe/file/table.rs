@@ -57,7 +57,9 @@ impl<'a> Table<'a> {
             )
         })?;
         let path = directory.join(&*value);
-        let mut text = text_of(&path, files::read(&path, "a table of spheres", LENGTH_LIMIT)?)?;
+        let read = files::read(&path, "a table of spheres", LENGTH_LIMIT).map_err(Into::into);
+        let text = read.and_then(|bytes| text_of(&path, bytes));
+        let mut text = text.map_err(|error| anyhow!("{name}:{line}: {error:#}"))?;
         if !text.contains('\n') {
             // Line ends of old Macintosh programs.
             text = text.replace('\r', "\n");
@@ -80,32 +82,62 @@ impl<'a> Table<'a> {
         let columns = columns_of(&cells.of(header)).map_err(|reason| at(line, reason))?;
         let mut coloured = HashMap::new();
         for (line, row) in lines {
-            let index = scene.spheres.len();
-            let mut values = Values { index, texts: [None; COLUMNS.len()] };
-            values.read(&cells.of(row), &columns).map_err(|reason| at(line, reason))?;
-            let mut sphere = || -> Result<Sphere, String> {
-                let center = values.vector(0)?;
-                let radius = values.number(RADIUS)?;
-                if let Some(name) = values.texts[MATERIAL] {
-                    let material = index_of.get(name).copied();
-                    let material = material.ok_or_else(|| missing_material(index, name).to_string())?;
-                    return Ok(Sphere { center, radius, material });
-                }
-                let albedo = values.vector(MATERIAL + 1)?;
-                let bits = albedo.to_array().map(f64::to_bits);
-                let material = match coloured.get(&bits) {
-                    Some(known) => *known,
-                    None => added_material(index, Material::Lambertian { albedo }, scene, index_of)?,
-                };
-                coloured.insert(bits, material);
-                Ok(Sphere { center, radius, material })
-            };
-            let sphere = sphere().map_err(|reason| at(line, reason))?;
-            sphere.validate(index, scene.materials.len()).map_err(|error| at(line, error.to_string()))?;
-            scene.spheres.push(sphere);
+            if row.matches('"').count() % 2 == 1 {
+                return Err(at(
+                    line,
+                    format!("the row {row:?} has a quote that is not closed; close it or remove it"),
+                ));
+            }
+            let sphere = sphere_of(&cells.of(row), &columns, scene, index_of, &mut coloured);
+            scene.spheres.push(sphere.map_err(|reason| at(line, reason))?);
         }
         Ok(())
     }
+}
+
+/// The sphere of a row, whose values are in `columns`. `coloured` has the materials of colours.
+fn sphere_of(
+    row: &[&str],
+    columns: &[Option<usize>; COLUMNS.len()],
+    scene: &mut Scene,
+    index_of: &mut HashMap<String, usize>,
+    coloured: &mut HashMap<[u64; 3], usize>,
+) -> Result<Sphere, String> {
+    let (index, found, count) = (scene.spheres.len(), row.len(), columns.iter().flatten().count());
+    if found != count {
+        let more = if found == MOST_VALUES { " or more" } else { "" };
+        return Err(format!(
+            "spheres[{index}] should have {count} values, one for each column, and has {found}{more}; separate the \
+             values by commas, and write a point in a number"
+        ));
+    }
+    let texts = columns.map(|column| row.get(column?).copied());
+    let number = |column: usize| -> Result<f64, String> {
+        let (name, value) = (COLUMNS[column], texts[column].unwrap_or_default());
+        value.parse().map_err(|_| {
+            format!("spheres[{index}].{name} is {value:?}, but must be a number such as -1.5 or 2e3")
+        })
+    };
+    let vector = |first: usize| -> Result<_, String> {
+        Ok(DVec3::new(number(first)?, number(first + 1)?, number(first + 2)?))
+    };
+    let (center, radius) = (vector(0)?, number(RADIUS)?);
+    let material = match texts[MATERIAL] {
+        Some(name) => index_of.get(name).copied().ok_or_else(|| missing_material(index, name).to_string())?,
+        None => {
+            let albedo = vector(MATERIAL + 1)?;
+            let bits = albedo.to_array().map(f64::to_bits);
+            let material = match coloured.get(&bits) {
+                Some(known) => *known,
+                None => added_material(index, Material::Lambertian { albedo }, scene, index_of)?,
+            };
+            coloured.insert(bits, material);
+            material
+        }
+    };
+    let sphere = Sphere { center, radius, material };
+    sphere.validate(index, scene.materials.len()).map_err(|error| error.to_string())?;
+    Ok(sphere)
 }
 
 /// Adds the own material of a sphere, which gets a unique name, and returns its index.
@@ -129,13 +161,16 @@ pub(super) fn added_material(
 struct Cells {
     reader: csv_core::Reader,
     text: Vec<u8>,
-    /// Where each value ends in the text. More than these no table has.
-    ends: [usize; 32],
+    /// Where each value ends in the text.
+    ends: [usize; MOST_VALUES],
 }
+
+/// More values a row never has.
+const MOST_VALUES: usize = 32;
 
 impl Cells {
     fn new() -> Self {
-        Cells { reader: csv_core::Reader::new(), text: Vec::new(), ends: [0; 32] }
+        Cells { reader: csv_core::Reader::new(), text: Vec::new(), ends: [0; MOST_VALUES] }
     }
 
     /// The values of a row.
@@ -177,39 +212,6 @@ fn columns_of(names: &[&str]) -> Result<[Option<usize>; COLUMNS.len()], String> 
         "the first line of a table of spheres is {header:?}, {found}, but must name its columns: x,y,z,radius and either material \
          or red,green,blue, each once, separated by commas, and no others"
     ))
-}
-
-/// The values of a row, in the order of [`COLUMNS`].
-struct Values<'a> {
-    index: usize,
-    texts: [Option<&'a str>; COLUMNS.len()],
-}
-
-impl<'a> Values<'a> {
-    fn read(&mut self, row: &[&'a str], columns: &[Option<usize>; COLUMNS.len()]) -> Result<(), String> {
-        self.texts = columns.map(|column| row.get(column?).copied());
-        let found = row.len();
-        let (index, count) = (self.index, columns.iter().flatten().count());
-        if found == count {
-            return Ok(());
-        }
-        Err(format!(
-            "spheres[{index}] should have {count} values, one for each column, and has {found}; separate the values by \
-             commas, and write a point in a number"
-        ))
-    }
-
-    fn number(&self, column: usize) -> Result<f64, String> {
-        let (index, name, value) = (self.index, COLUMNS[column], self.texts[column].unwrap_or_default());
-        value.parse().map_err(|_| {
-            format!("spheres[{index}].{name} is {value:?}, but must be a number such as -1.5 or 2e3")
-        })
-    }
-
-    /// The vector in three columns from this one.
-    fn vector(&self, column: usize) -> Result<DVec3, String> {
-        Ok(DVec3::new(self.number(column)?, self.number(column + 1)?, self.number(column + 2)?))
-    }
 }
 
 /// The spheres as the value of a scene file's key; `None` if the name of a material does not fit into a table.
