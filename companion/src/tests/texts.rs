@@ -257,7 +257,7 @@ fn readings_of_random_drawings_agree_with_captions() {
         assert!(still.contains("data-random") && holds(reading, words, is_below), "{name}: {reading}");
     }
     assert!(!holds("random 0.2, Sobol 0.3", ["Sobol", "random"], true));
-    let all = std::fs::read_dir("../docs/companion/diagrams").unwrap();
+    let all = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/companion/diagrams")).unwrap();
     let is_random = |path: &std::path::Path| std::fs::read_to_string(path).unwrap().contains("data-random");
     assert_eq!(all.filter(|entry| is_random(&entry.as_ref().unwrap().path())).count(), 4);
 }
