@@ -15,7 +15,8 @@ pub fn unknown<'a>(letters: &Letters, chapter: &str, mathml: &'a str) -> Option<
         known.any(|known| known.contains_key(letter))
     };
     let names = mathml.split("<mi>").skip(1).filter_map(|rest| rest.split("</mi>").next());
-    names.filter(|name| name.chars().count() == 1).find(|letter| !is_known(letter))
+    let is_letter = |name: &&str| name.chars().count() == 1 && name.chars().all(char::is_alphabetic);
+    names.filter(is_letter).find(|letter| !is_known(letter))
 }
 
 #[cfg(test)]

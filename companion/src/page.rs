@@ -64,13 +64,13 @@ pub fn render(site: &Site, is_quick: bool) -> Result<Page> {
 /// # Errors
 /// If `path` cannot be written or holds something without [`GENERATOR`].
 pub fn check_replaceable(path: &Path) -> Result<()> {
-    let is_own = || fs::read_to_string(path).is_ok_and(|page| page.contains(GENERATOR));
-    ensure!(
-        !path.exists() || is_own(),
-        "{}: there is a page that Weekender did not write; move it away, or choose another directory with --out",
-        path.display()
-    );
-    Ok(check_writable(path)?)
+    if path.exists() {
+        check_writable(path)?;
+        let is_own = fs::read_to_string(path).is_ok_and(|page| page.contains(GENERATOR));
+        let remedy = "move it away, or choose another directory with --out";
+        ensure!(is_own, "{}: there is a page that Weekender did not write; {remedy}", path.display());
+    }
+    Ok(())
 }
 
 /// The last stage, whose picture opens the page.
