@@ -179,7 +179,7 @@ fn errors_in_texts_name_the_line() {
         ("{{figure sky\n[x](page:no-such)\n}}", "no chapter \"no-such\""),
         ("{{table no-such}}", "no measurement \"no-such\""),
         ("{{diagram no-such}}", "diagrams/no-such.svg"),
-        ("{{code\nshaders/sphere.wgsl: fn chord\n}}", "what is missing (C)"),
+        ("{{code\nshaders/sphere.wgsl: fn chord\n}}", "what is missing (C, Rust)"),
         (
             "{{code without: none\nreference/rt_weekend.c: static double dot\nshaders/lanes.wgsl: fn dot3\nsrc/render_cpu/lanes/vector.rs: pub fn dot\n}}",
             "only then",
