@@ -116,10 +116,13 @@ fn speed_tables(kept: &Kept) -> Result<Markup> {
     Ok(html! { @for table in tables? { (table) } })
 }
 
+/// A number as a cell shows it.
+type Words = fn(f64) -> String;
+
 fn speed_table(kept: &Kept, scene: &Value) -> Result<Markup> {
     let rows = scene["rows"].as_array().map_or(&[][..], Vec::as_slice);
     let first = rows.first().and_then(median).context("the first row has no speed")?;
-    let mut more: Vec<(&str, &str, fn(f64) -> String)> = vec![
+    let mut more: Vec<(&str, &str, Words)> = vec![
         ("samples per pixel", "samples_per_pixel", |samples| samples.to_string()),
         ("lanes in use", "lanes_in_use", percent),
         ("lanes in use", "in_use", percent),

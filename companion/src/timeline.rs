@@ -49,9 +49,8 @@ pub fn figure(id: &str, uses: &mut Uses) -> Result<Markup> {
     // Refill never takes longer.
     let columns = plain[0].len();
     let summary = |timeline: &Timeline| {
-        let places = timeline.len() * timeline[0].len();
         let at_work = timeline.iter().flatten().filter(|activity| **activity != WAITS).count();
-        let share = 100.0 * at_work as f64 / places as f64;
+        let share = 100.0 * at_work as f64 / (timeline.len() * timeline[0].len()) as f64;
         format!("{} steps, {share:.0} % of the lanes at work", timeline[0].len())
     };
     Ok(html! {
