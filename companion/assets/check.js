@@ -187,7 +187,7 @@ onmessage = ({ data: [module, args, files] }) => {
     const id = heading && (heading.closest("h3") ?? heading.closest(".head").querySelector("h2")).id;
     if (id) links.append(make("a", { href: `#${id}`, textContent: `Read ${found.read.section} here` }));
     if (found.read) links.append(make("a", { href: found.read.url, textContent: `${found.read.section} in the book` }));
-    const strip = found.mistake && document.querySelector(`.mistakes img[src*="-${found.mistake.id}-"]`)?.closest("li");
+    const strip = found.mistake && document.querySelector(`[data-mistake="${found.mistake.id}"]`);
     if (strip) {
       strip.id = `mistake-${found.mistake.id}`;
       links.append(make("a", { href: `#${strip.id}`, textContent: "What it looks like" }));

@@ -174,6 +174,9 @@ function framed(root) {
   return [still, frame];
 }
 
+// Whether texts call a slider so: `fuzz` or, to tell one of several, `fuzz.left`.
+const isCalled = ({ key, name }, wanted) => wanted === key || wanted === `${key}.${name}`;
+
 // A figure's picture with its switch and sliders.
 class Panel {
   constructor(root, stage) {
@@ -261,10 +264,7 @@ class Panel {
   // The label says what the picture shows: its numbers come from the state.
   name(valueOf) {
     if (!this.label) return;
-    const number = (wanted) => {
-      const [key, name = ""] = wanted.split(".");
-      return +valueOf(this.stage.sliders.find((slider) => slider.key === key && slider.label.includes(name))).toFixed(2);
-    };
+    const number = (wanted) => +valueOf(this.stage.sliders.find((slider) => isCalled(slider, wanted))).toFixed(2);
     const said = this.label.dataset.label.replace(/{(.*?)}/g, (_, wanted) => number(wanted));
     this.label.textContent = said.replace(/\b1 (sample|bounce|degree)s/, "1 $1");
   }
@@ -311,7 +311,7 @@ class Panel {
     for (const [image] of this.usual) Object.assign(image, { srcset: "", src: file });
     const wanted = new URLSearchParams(settings);
     this.name((slider) => {
-      const found = [...wanted].find(([key]) => key.split(".")[0] === slider.key && slider.label.includes(key.split(".")[1] ?? ""));
+      const found = [...wanted].find(([name]) => isCalled(slider, name));
       return found ? Number(found[1]) : slider.value;
     });
     this.back ??= this.root.appendChild(element("button", { type: "button", className: "live-back", textContent: "Back to the usual picture", onclick: () => this.unset() }));
@@ -369,9 +369,7 @@ class Panel {
     if (this.session) this.reset.click();
     else this.start();
     for (const [wanted, value] of new URLSearchParams(settings)) {
-      const [key, name = ""] = wanted.split(".");
-      const isWanted = (slider) => slider.key === key && slider.label.includes(name);
-      this.stage.sliders.filter(isWanted).forEach((slider) => this.change(slider, Number(value)));
+      this.stage.sliders.filter((slider) => isCalled(slider, wanted)).forEach((slider) => this.change(slider, Number(value)));
     }
     this.open(true);
     this.update();

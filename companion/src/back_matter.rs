@@ -12,15 +12,9 @@ pub struct Term {
     pub term: String,
     /// Definition, in Markdown.
     pub text: String,
-    pub area: Area,
+    /// A part of the glossary, with a heading there.
+    pub area: String,
 }
-
-/// A part of the glossary: light, pictures and noise; lanes, threads and devices; how numbers are stored and rounded;
-/// words of Rust, WGSL and C++.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "lowercase")]
-#[rustfmt::skip]
-pub enum Area { Rendering, Parallelism, Numbers, Languages }
 
 /// A work cited in the text.
 #[derive(Clone, Debug, Deserialize)]

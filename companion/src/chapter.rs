@@ -1,6 +1,6 @@
 //! The page's chapters: Markdown files that start with a few facts.
 
-use crate::library::{Fault, Library, line_of};
+use crate::library::{Fault, Library, line_of, parsed};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -50,18 +50,13 @@ impl Chapter {
         self.facts.short.as_deref().unwrap_or(&self.facts.title)
     }
 
-    /// The number to show: the book's or, beyond the book, a letter. `None` where it could be mistaken for that of one
-    /// of the book's chapters.
+    /// The number to show: the book's or, beyond the book, a letter.
     pub fn shown_number(&self) -> Option<String> {
-        let own = Some(self.number.to_string());
-        let letter =
-            self.number.checked_sub(FIRST_BEYOND_BOOK).map(|place| char::from(b'A' + place).to_string());
-        if self.facts.book == own { own } else { letter }
-    }
-
-    /// The number to show and a space, or nothing.
-    pub fn number_prefix(&self) -> String {
-        self.shown_number().map_or_else(String::new, |number| number + " ")
+        match self.number {
+            2..=14 => Some(self.number.to_string()),
+            FIRST_BEYOND_BOOK.. => Some(char::from(b'A' + self.number - FIRST_BEYOND_BOOK).to_string()),
+            _ => None,
+        }
     }
 
     /// Splits a file into facts and Markdown.
@@ -77,10 +72,7 @@ impl Chapter {
             file: file.to_owned(),
             number: number.parse().unwrap_or_default(),
             id: id.to_owned(),
-            facts: toml::from_str(facts).map_err(|error| {
-                let line = error.span().map_or(1, |span| line_of(facts, span.start));
-                Fault::new(file, 1 + line, error.message())
-            })?,
+            facts: parsed(file, facts, 1)?,
             body: body.to_owned(),
             lines_before: 2 + line_of(facts, facts.len()),
         })
@@ -100,14 +92,8 @@ mod tests {
         assert_eq!((chapter.number, chapter.id.as_str(), chapter.short()), (6, "normals", "Normals"));
         assert_eq!((chapter.body.as_str(), chapter.lines_before), ("\nText\n", 4));
         assert_eq!(chapter.shown_number().as_deref(), Some("6"));
-        let shown = |number, book: Option<&str>| {
-            let facts = Facts { book: book.map(str::to_owned), ..chapter.facts.clone() };
-            Chapter { number, facts, ..chapter.clone() }.shown_number()
-        };
-        assert_eq!(
-            [shown(21, None), shown(0, Some("1")), shown(14, None)],
-            [Some("B".to_owned()), None, None]
-        );
+        let shown = |number| Chapter { number, ..chapter.clone() }.shown_number();
+        assert_eq!([shown(21), shown(0), shown(17)], [Some("B".to_owned()), None, None]);
     }
 
     #[test]

@@ -16,13 +16,9 @@ const FILE: &str = "check.js";
 const PIXEL_LIMIT: u32 = 1_300_000;
 
 /// The script in the build folder that this program is in; `assets/package/cross.sh web` makes it.
-fn find() -> Option<PathBuf> {
+pub fn find() -> Option<PathBuf> {
     let program = env::current_exe().ok()?;
     program.ancestors().map(|folder| folder.join("cross").join(FILE)).find(|path| path.is_file())
-}
-
-pub fn is_there() -> bool {
-    find().is_some()
 }
 
 /// Copies the script beside the page.

@@ -10,7 +10,7 @@ use crate::prose::Place;
 use crate::site::Site;
 use crate::timeline;
 use crate::uses::Uses;
-use crate::words::{numbered, typographic};
+use crate::words::{is_word, numbered, typographic};
 use anyhow::{Context, Error, Result, bail, ensure};
 use maud::{Markup, PreEscaped, html};
 use std::str::FromStr;
@@ -18,7 +18,7 @@ use weekender::excerpt::Excerpt;
 use weekender::stages::Stage;
 
 /// The directives and their arguments. More lines hold a caption, or what to quote.
-const KNOWN: &str = "figure ID, figure ID crop LEFT TOP WIDTH HEIGHT, figure ID aim X Y Z DEGREES, code, code without LANGUAGES: REASON, fold TITLE, unfold, mistakes STAGE, bounces STAGE, samples STAGE (these three also with crop LEFT TOP WIDTH HEIGHT), denoised STAGE SAMPLES, table NAME, chart NAME, diagram NAME, diagram NAME where WORD < WORD, timeline STAGE, glossary, references";
+const KNOWN: &str = "figure ID, figure ID crop LEFT TOP WIDTH HEIGHT, figure ID aim X Y Z DEGREES, code, code without: REASON, fold TITLE, unfold, mistakes STAGE, bounces STAGE, samples STAGE (these three also with crop LEFT TOP WIDTH HEIGHT), denoised STAGE SAMPLES, table NAME, chart NAME, diagram NAME, timeline STAGE, glossary AREA, references";
 
 /// The HTML of a directive, given without its braces.
 pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) -> Result<Markup> {
@@ -31,23 +31,12 @@ pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) ->
         text => place.inside(site, text, uses).map(Some).map_err(|fault| Error::msg(fault.message)),
     };
     match words.as_slice() {
-        ["figure", id] => figure(id, caption()?, Part::None, uses),
-        ["figure", id, "crop", part @ ..] => figure(id, caption()?, Part::Crop(numbers(part)?), uses),
-        ["figure", id, "aim", part @ ..] => figure(id, caption()?, Part::Aim(numbers(part)?), uses),
-        ["code"] => code(site, place, more, ""),
-        ["code", "without", ..] => {
-            code(site, place, more, head.split_once("without ").map_or("", |(_, why)| why))
-        }
-        [kind @ ("mistakes" | "bounces" | "samples"), stage, part @ ..] => {
-            let crop = match part {
-                [] => None,
-                ["crop", part @ ..] => Some(numbers(part)?),
-                _ => bail!("after the stage, only a crop can stand"),
-            };
-            match *kind {
-                "mistakes" => pictures::mistakes(stage, more, crop, uses),
-                kind => pictures::variants(stage, more, kind == "samples", crop, uses),
-            }
+        ["figure", id, shown @ ..] => figure(id, caption()?, part(shown)?, uses),
+        ["code"] => code(site, place, more, "", uses),
+        ["code", "without:", ..] => code(site, place, more, &words[2..].join(" "), uses),
+        ["mistakes", stage, shown @ ..] => pictures::mistakes(stage, more, part(shown)?, uses),
+        [kind @ ("bounces" | "samples"), stage, shown @ ..] => {
+            pictures::variants(stage, more, *kind == "samples", part(shown)?, uses)
         }
         ["fold", ..] => {
             let title = place.inside(site, &words[1..].join(" "), uses)?;
@@ -56,19 +45,24 @@ pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) ->
         ["unfold"] => Ok(PreEscaped("</details>".to_owned())),
         ["denoised", stage, samples] => {
             let caption = caption()?.context("a figure of denoising needs a caption")?;
-            let panels = pictures::denoised(stage, samples, uses)?;
-            Ok(
-                html! { figure .figure .wide id={ "denoised-" (stage) } { (panels) (numbered(&caption, uses)) } },
-            )
+            pictures::denoised(stage, samples, &caption, uses)
         }
         ["table", name] => site.measured.table(name),
         ["chart", name] => site.measured.chart(name, uses),
-        ["diagram", name] => diagram(site, name, caption()?, None, uses),
-        ["diagram", name, "where", a, sign, b] => diagram(site, name, caption()?, Some([a, sign, b]), uses),
+        ["diagram", name] => diagram(site, name, caption()?, uses),
         ["timeline", stage] => timeline::figure(stage, uses),
-        ["glossary"] => Ok(lists::glossary(site, place, uses)?),
+        ["glossary", area] => Ok(lists::glossary(site, place, area, uses)?),
         ["references"] => Ok(lists::references(site, place, uses)?),
         _ => bail!("{{{{{directive}}}}} is not a directive; use one of {KNOWN}"),
+    }
+}
+
+fn part(words: &[&str]) -> Result<Part> {
+    match words {
+        [] => Ok(Part::None),
+        ["crop", part @ ..] => Ok(Part::Crop(numbers(part)?)),
+        ["aim", part @ ..] => Ok(Part::Aim(numbers(part)?)),
+        _ => bail!("after the picture, only a crop or an aim can stand"),
     }
 }
 
@@ -77,7 +71,7 @@ fn numbers<T: FromStr>(words: &[&str]) -> Result<[T; 4]> {
     numbers.ok().and_then(|numbers| numbers.try_into().ok()).context("give four numbers")
 }
 
-/// A second picture below a panel's.
+/// A second picture below a panel's, or the part that pictures in a row show.
 #[derive(Clone, Copy)]
 pub enum Part {
     None,
@@ -103,15 +97,15 @@ pub fn panel(
     // A live panel fills its label again whenever its state changes.
     let said = label.map(|label| live::filled(stage, label)).transpose()?;
     // The window opens the page at a stage.
-    let id = format!("stage-{}", stage.id);
-    let id = Some(id).filter(|id| small.is_none() && uses.anchors.insert(id.clone()));
+    let is_first = small.is_none() && uses.stages.insert(stage.id);
+    let id = is_first.then(|| format!("stage-{}", stage.id));
     let (file, [width, height]) =
         (format!("figures/{}.png", stage.id), [stage.setup.width, stage.setup.height]);
     Ok(html! {
         div .panel id=[id] data-stage=(stage.id) {
             div .live-frame { img .pixels[width < FEW_PIXELS] src=(file) width=(width) height=(height) alt=(stage.alt)
                 loading=[small.is_none().then_some("lazy")] fetchpriority=[small.map(|_| "high")]
-                srcset=[small.map(|small| format!("{}, {file} {width}w", small.candidate()))]
+                srcset=[small.map(|small| format!("{} {}w, {file} {width}w", small.file(), small.recipe.settings.width))]
                 sizes=[small.map(|_| "(max-width: 40rem) 14rem, 70rem")]; }
             @if let Part::Aim([x, y, z, vfov]) = part { (aimed(stage, [x, y, z], vfov, uses)) }
             @if let Part::Crop(crop) = part {
@@ -131,11 +125,11 @@ pub fn panel(
 
 /// The stage from the same eye, with a camera that looks at a point.
 fn aimed(stage: &'static Stage, [x, y, z]: [f64; 3], vfov: f64, uses: &mut Uses) -> Markup {
-    let mut picture = Picture::still(stage);
+    let mut picture = Picture::set(stage);
     let camera = &mut picture.recipe.camera;
     (camera.look_at.x, camera.look_at.y, camera.look_at.z, camera.vfov_degrees) = (x, y, z, vfov);
     let shown = html! { div .aimed { (picture.img("seen with a camera that looks at it")) } };
-    uses.pictures.push(picture);
+    uses.add(picture);
     shown
 }
 
@@ -143,9 +137,6 @@ fn figure(id: &str, caption: Option<Markup>, part: Part, uses: &mut Uses) -> Res
     let figure = Figure::find(id);
     let figure = figure
         .with_context(|| format!("there is no figure {id:?}; companion/assets/figures.toml has them"))?;
-    if !uses.anchors.insert(format!("figure-{id}")) {
-        bail!("the figure {id:?} is on the page already; link it as [text](#figure-{id})");
-    }
     let is_wide = figure.panels.len() > 1;
     let panels: Result<Vec<Markup>> = figure
         .panels
@@ -165,45 +156,32 @@ fn figure(id: &str, caption: Option<Markup>, part: Part, uses: &mut Uses) -> Res
     })
 }
 
-/// Order of the switch between languages.
-const LANGUAGES: [&str; 3] = ["c", "wgsl", "rs"];
-
-fn name_of(language: &str) -> String {
-    if language == "rs" { "Rust".to_owned() } else { language.to_uppercase() }
-}
+/// The languages of excerpts with their names, in the order of the switch.
+const LANGUAGES: [(&str, &str); 3] = [("c", "C"), ("wgsl", "WGSL"), ("rs", "Rust")];
 
 /// Excerpts, one a line, with a switch between their languages. The first is open. In the book's chapters, `why` gives the
-/// reason for each language that is missing, as in `C, WGSL: the reason`.
-fn code(site: &Site, place: &Place<'_>, wanted: &str, why: &str) -> Result<Markup> {
-    let excerpts: Result<Vec<Excerpt>, String> =
-        wanted.lines().map(|line| site.library.excerpt(line)).collect();
-    let excerpts = excerpts.map_err(Error::msg)?;
-    let mut languages: Vec<&str> = excerpts.iter().map(Excerpt::language).collect();
-    let open = languages.first().copied().unwrap_or_default();
-    languages.sort_by_key(|language| LANGUAGES.iter().position(|known| known == language));
-    languages.dedup();
-    let (lacking, reason) = why.split_once(": ").unwrap_or((why, ""));
-    let lacking: Vec<&str> = lacking.split(", ").filter(|name| !name.is_empty()).collect();
-    for language in LANGUAGES.iter().filter(|_| place.is_of_book()) {
-        let name = name_of(language);
-        let (is_there, is_excused) = (languages.contains(language), lacking.contains(&name.as_str()));
-        if is_there == is_excused {
-            let what = if is_there { "is there" } else { "is missing" };
-            bail!("{name} {what}; list exactly what is missing: code without C, WGSL: REASON");
-        }
-    }
+/// reason if a language is missing.
+fn code(site: &Site, place: &Place<'_>, wanted: &str, why: &str, uses: &mut Uses) -> Result<Markup> {
+    let excerpts = wanted.lines().map(|line| site.library.excerpt(line)).collect::<Result<Vec<Excerpt>>>()?;
+    let open = excerpts.first().map(Excerpt::language).unwrap_or_default();
+    let shown = excerpts.iter().filter(|excerpt| excerpt.language() == open);
+    uses.words.extend(shown.flat_map(|excerpt| excerpt.text.split(|c| !is_word(c))).map(str::to_owned));
+    let has = |language: &str| excerpts.iter().any(|excerpt| excerpt.language() == language);
+    let languages: Vec<_> = LANGUAGES.iter().filter(|(language, _)| has(language)).collect();
+    let lacking = LANGUAGES.iter().filter(|(language, _)| place.is_of_book() && !has(language));
+    let lacking: Vec<&str> = lacking.map(|(_, name)| *name).collect();
+    let is_said = lacking.is_empty() == why.is_empty();
+    ensure!(is_said, "for what is missing ({}), and only then, say why", lacking.join(", "));
     Ok(html! {
         div .tabbed {
             @if languages.len() > 1 {
                 div .tabs role="group" aria-label="Language" {
-                    @for language in &languages {
-                        button type="button" data-language=(language) aria-pressed=(*language == open) {
-                            (name_of(language))
-                        }
+                    @for (language, name) in languages {
+                        button type="button" data-language=(language) aria-pressed=(*language == open) { (name) }
                     }
                 }
             }
-            @if !reason.is_empty() { p .without { "Not shown in " (lacking.join(" or ")) ": " (typographic(reason)) "." } }
+            @if !why.is_empty() { p .without { "Not shown in " (lacking.join(" or ")) ": " (typographic(why)) "." } }
             @for excerpt in &excerpts {
                 @let language = excerpt.language();
                 @let Excerpt { file, first, last, text } = excerpt;
@@ -221,39 +199,12 @@ fn code(site: &Site, place: &Place<'_>, wanted: &str, why: &str) -> Result<Marku
     })
 }
 
-/// Diagrams are SVG files that take their colours from the text around them. Without a caption, they have their title. What
-/// the caption of a random one claims is given as two words of its reading, each with a number after it.
-fn diagram(
-    site: &Site,
-    name: &str,
-    caption: Option<Markup>,
-    claim: Option<[&str; 3]>,
-    uses: &mut Uses,
-) -> Result<Markup> {
+/// Diagrams are SVG files that take their colours from the text around them. Without a caption, they have their title.
+fn diagram(site: &Site, name: &str, caption: Option<Markup>, uses: &mut Uses) -> Result<Markup> {
     let path = format!("{FOLDER}/diagrams/{name}.svg");
     // The line to name is the directive's.
     let text = site.library.read(&path).map_err(|fault| Error::msg(fault.to_string()))?;
     let start = text.find("<svg").with_context(|| format!("{path} has no <svg> element"))?;
-    ensure!(
-        claim.is_some() || !text.contains("data-random"),
-        "{name} draws random numbers: add what its reading shows, as in `where Sobol < random`"
-    );
-    if let Some([a, sign, b]) = claim {
-        let reading = text
-            .split_once("<desc")
-            .and_then(|(_, rest)| rest.split_once("</desc>"))
-            .map_or("", |(reading, _)| reading);
-        let [left, right] = [number_after(reading, a)?, number_after(reading, b)?];
-        let holds = match sign {
-            "<" => left < right,
-            // Within 2 % of a whole.
-            _ => (left - right).abs() <= 2.0,
-        };
-        ensure!(
-            holds,
-            "the reading of {name} contradicts its caption: {a} {left} {sign} {b} {right}; open it in another state"
-        );
-    }
     let title = text.split_once("<title").and_then(|(_, rest)| rest.split_once('>'));
     let title = title.and_then(|(_, rest)| rest.split_once("</title>")).map(|(title, _)| title.trim());
     let caption = caption.or(title.map(|title| PreEscaped(title.to_owned())));
@@ -263,15 +214,4 @@ fn diagram(
             (numbered(&caption.unwrap_or_default(), uses))
         }
     })
-}
-
-/// The number after the last occurrence of a word.
-fn number_after(reading: &str, word: &str) -> Result<f64> {
-    let (_, rest) = reading.rsplit_once(word).with_context(|| format!("the reading has no {word:?}"))?;
-    let number = rest.trim_start_matches(|c: char| !c.is_ascii_digit());
-    let end = number.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(number.len());
-    number[..end]
-        .trim_end_matches('.')
-        .parse()
-        .with_context(|| format!("no number is after {word:?} in the reading"))
 }

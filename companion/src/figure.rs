@@ -28,21 +28,15 @@ pub struct Panel {
     pub label: String,
 }
 
-impl Figure {
-    /// All figures in the book's order. Every stage is in at least one.
-    pub fn all() -> &'static [Figure] {
-        static ALL: LazyLock<Vec<Figure>> = LazyLock::new(|| {
-            // A test finds the figures of every stage.
-            let text = include_str!("../assets/figures.toml");
-            toml::from_str(text)
-                .map(|mut file: BTreeMap<String, _>| file.remove("figure").unwrap_or_default())
-                .unwrap_or_default()
-        });
-        &ALL
-    }
+/// All figures in the book's order. Every stage is in at least one. A test finds them.
+pub static FIGURES: LazyLock<Vec<Figure>> = LazyLock::new(|| {
+    let file: Option<BTreeMap<String, _>> = toml::from_str(include_str!("../assets/figures.toml")).ok();
+    file.and_then(|mut file| file.remove("figure")).unwrap_or_default()
+});
 
+impl Figure {
     pub fn find(id: &str) -> Option<&'static Figure> {
-        Self::all().iter().find(|figure| figure.id == id)
+        FIGURES.iter().find(|figure| figure.id == id)
     }
 
     /// Whether the stage with this id is in the figure.
@@ -66,12 +60,12 @@ mod tests {
 
     #[test]
     fn figures_cover_every_stage_in_order() {
-        let panels = || Figure::all().iter().flat_map(|figure| &figure.panels);
+        let panels = || FIGURES.iter().flat_map(|figure| &figure.panels);
         let shown: HashSet<&str> = panels().map(|panel| panel.stage_id.as_str()).collect();
         assert_eq!(shown, Stage::ALL.iter().map(|stage| stage.id).collect());
-        let ids: HashSet<&str> = Figure::all().iter().map(|figure| figure.id.as_str()).collect();
-        assert_eq!(ids.len(), Figure::all().len());
+        let ids: HashSet<&str> = FIGURES.iter().map(|figure| figure.id.as_str()).collect();
+        assert_eq!(ids.len(), FIGURES.len());
         let latest = |figure: &Figure| figure.panels.iter().map(|panel| panel.stage().index()).max();
-        assert!(Figure::all().is_sorted_by_key(latest));
+        assert!(FIGURES.is_sorted_by_key(latest));
     }
 }

@@ -1,5 +1,6 @@
 //! The page's texts and the sources that it quotes, read from the checkout, so that edits show without a new build.
 
+use anyhow::{Context, Error};
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -46,11 +47,7 @@ impl Library {
     }
 
     pub fn toml<T: DeserializeOwned>(&self, path: &str) -> Result<T, Fault> {
-        let text = self.read(path)?;
-        toml::from_str(&text).map_err(|error| {
-            let line = error.span().map_or(0, |span| line_of(&text, span.start));
-            Fault::new(path, line, error.message())
-        })
+        parsed(path, &self.read(path)?, 0)
     }
 
     /// The tables of a TOML file, in file order.
@@ -78,11 +75,19 @@ impl Library {
 
     /// Cuts `FILE: ITEM`, which is an item, statement or block, or `FILE: FIRST ... LAST`, which ends with the item
     /// `LAST`.
-    pub fn excerpt(&self, wanted: &str) -> Result<Excerpt, String> {
+    pub fn excerpt(&self, wanted: &str) -> anyhow::Result<Excerpt> {
         let (file, words) =
-            wanted.split_once(": ").ok_or("name a file, a colon and the first words of an item")?;
-        cut(file, &self.read(file).map_err(|fault| fault.to_string())?, words)
+            wanted.split_once(": ").context("name a file, a colon and the first words of an item")?;
+        cut(file, &self.read(file).map_err(|fault| Error::msg(fault.to_string()))?, words).map_err(Error::msg)
     }
+}
+
+/// Reads TOML that stands after `lines_before` lines of a file.
+pub fn parsed<T: DeserializeOwned>(file: &str, text: &str, lines_before: usize) -> Result<T, Fault> {
+    toml::from_str(text).map_err(|error| {
+        let line = error.span().map_or(0, |span| line_of(text, span.start));
+        Fault::new(file, lines_before + line, error.message())
+    })
 }
 
 /// An error in the texts, with file and line.

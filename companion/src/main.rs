@@ -3,7 +3,6 @@
 
 #![warn(clippy::disallowed_macros)]
 
-mod agreement;
 mod back_matter;
 mod chapter;
 mod check;
@@ -21,21 +20,21 @@ mod picture;
 mod pictures;
 mod prose;
 mod site;
-mod stills;
 mod timeline;
 mod uses;
 mod words;
+mod work;
 
 use clap::Parser;
 use library::Library;
 use options::Options;
 use site::Site;
 use std::process::ExitCode;
-use stills::{Outcome, Work};
 use weekender::system::failure::Failure;
-use weekender::system::files::{make_directory, write_text};
+use weekender::system::files::write_text;
 use weekender::system::interrupt::{self, Interrupt};
 use weekender::system::journal;
+use work::Outcome;
 
 fn main() -> ExitCode {
     interrupt::survive_file_size_limit();
@@ -46,39 +45,31 @@ fn main() -> ExitCode {
 fn run() -> Result<ExitCode, Failure> {
     let options = Options::try_parse().map_err(Failure::CommandLine)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
-    let (outcome, made) = if options.only.is_empty() {
-        (write(&options, &interrupt)?, options.index())
-    } else {
-        (Work::begin(&options, &interrupt)?.render()?, options.figures())
-    };
-    outcome.report(&made, &interrupt)
+    write(&options, &interrupt)?.report(&options, &interrupt)
 }
 
-/// Writes the page and renders the pictures that changed, until `interrupt` is set.
+/// Writes the page and renders the pictures that changed, or those of `only`, until `interrupt` is set.
 ///
 /// # Errors
 /// [`Failure::Input`] if nothing was written; [`Failure::BrokeOff`] or [`Failure::Run`] otherwise.
 fn write(options: &Options, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+    if !options.only.is_empty() {
+        return work::render(options, interrupt, options.stills(), || Ok(()));
+    }
     let page = Site::read(&Library::of_checkout()).and_then(|site| page::render(&site, options.quick));
     let page = page.map_err(Failure::Input)?;
-    let (out, index) = (&options.out, options.index());
+    let (out, index) = (&options.out, options.made());
     page::check_replaceable(&index).map_err(Failure::Input)?;
-    let work = Work::begin(options, interrupt)?;
-    make_directory(&out.join(picture::FOLDER)).map_err(Failure::Input)?;
-    // Write the page first, so that it can be read while its figures are rendered.
-    check::copy(out).map_err(Failure::Run)?;
-    write_text(&out.join("later.js"), &page.later).map_err(Failure::run)?;
-    write_text(&index, &page.html).map_err(Failure::run)?;
-    let mut missing = page.pictures.len();
-    for picture in page.pictures.iter().take_while(|_| !interrupt.is_set()) {
-        picture.render(out).map_err(Failure::Run)?;
-        missing -= 1;
-    }
-    if missing == 0 {
+    let pictures = page.pictures.iter().cloned().chain(options.stills()).collect();
+    // The page comes first, so that it can be read while its figures are rendered.
+    let outcome = work::render(options, interrupt, pictures, || {
+        check::copy(out).map_err(Failure::Run)?;
+        write_text(&out.join("later.js"), &page.later).map_err(Failure::run)?;
+        write_text(&index, &page.html).map_err(Failure::run)
+    })?;
+    if outcome.missing == 0 {
         picture::remove_others(out, &page.pictures).map_err(Failure::Run)?;
     }
-    let mut outcome = work.render()?;
-    outcome.missing += missing;
     Ok(outcome)
 }
 

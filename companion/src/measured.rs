@@ -8,15 +8,13 @@ use maud::{Markup, PreEscaped, html};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::slice;
 use weekender::measure;
 use weekender::measure::report::{self, CurveSummary};
 use weekender::numbers::chart::{self, UNTITLED_TOP};
 
 /// Lists the stored measurements.
 const FILE: &str = "docs/companion/measured.toml";
-
-/// Name of the benchmark among the measurements.
-const BENCH: &str = "speed";
 
 /// Name of the measurement of error against time, which also has a chart.
 const REPORT: &str = "error";
@@ -95,12 +93,8 @@ impl Measured {
     /// The table with this name.
     pub fn table(&self, name: &str) -> Result<Markup> {
         let kept = self.find(name)?;
-        match name {
-            BENCH => speed_tables(kept),
-            REPORT => error_table(kept),
-            _ => comparison(kept),
-        }
-        .with_context(|| format!("{FOLDER}/{}", kept.file))
+        let table = if name == REPORT { error_table(kept) } else { speed_tables(kept) };
+        table.with_context(|| format!("{FOLDER}/{}", kept.file))
     }
 
     /// The chart with this name.
@@ -110,56 +104,47 @@ impl Measured {
     }
 
     fn find(&self, name: &str) -> Result<&Kept> {
-        self.0.get(name).with_context(|| {
-            let known: Vec<&str> = self.0.keys().map(String::as_str).collect();
-            format!("there is no measurement {name:?}; measured.toml has {}", known.join(", "))
-        })
+        self.0.get(name).with_context(|| format!("there is no measurement {name:?} in {FILE}"))
     }
 }
 
-/// One table per scene, from the JSON of `weekender bench`.
+/// Ways of doing the same work, compared with the first: a table for each scene of `weekender bench`, or one from
+/// `examples/mappings`.
 fn speed_tables(kept: &Kept) -> Result<Markup> {
-    let json = &kept.json;
-    ensure!(json["schema"] == measure::SCHEMA, "is no benchmark of version {}", measure::SCHEMA);
-    let columns = ["tracer", "samples per pixel", SPEED, "× C89", "lanes in use"];
-    let table = |scene: &Value| {
-        let rows = items(&scene["rows"]);
-        let row = |row: &Value| match row["skipped"].as_str() {
-            Some(reason) => vec![html! { (text(&row["name"])) }, html! { "not measured: " (reason) }],
-            None => vec![
-                html! { (text(&row["name"])) },
-                shown(row["samples_per_pixel"].as_u64(), |samples| samples.to_string()),
-                speed(row, rows),
-                shown(row["ratio_to_baseline"].as_f64(), |ratio| format!("{ratio:.2}")),
-                shown(row["lanes_in_use"].as_f64(), percent),
-            ],
-        };
-        let name = text(&scene["scene"]);
-        let [width, height, depth, spheres] =
-            ["width", "height", "max_depth", "spheres"].map(|key| &scene[key]);
-        let caption = html! {
-            strong { (name) } ", " (width) " × " (height) ", at most " (depth.as_u64().unwrap_or(1) - 1) " bounces, " (spheres) " spheres. "
-            "Median and range of the runs. " (origin(kept))
-        };
-        table(&format!("Speed of {name}"), &caption, &columns, rows.iter().map(row))
-    };
-    Ok(html! { @for scene in items(&json["scenes"]) { (table(scene)) } })
+    let scenes = kept.json["scenes"].as_array().map_or(slice::from_ref(&kept.json), Vec::as_slice);
+    let tables: Result<Vec<Markup>> = scenes.iter().map(|scene| speed_table(kept, scene)).collect();
+    Ok(html! { @for table in tables? { (table) } })
 }
 
-/// Ways of doing the same work, compared with the first, from the JSON of `examples/mappings`.
-fn comparison(kept: &Kept) -> Result<Markup> {
-    let (about, rows) = (text(&kept.json["about"]), items(&kept.json["rows"]));
+/// A number as a cell shows it.
+type Words = fn(f64) -> String;
+
+fn speed_table(kept: &Kept, scene: &Value) -> Result<Markup> {
+    let rows = scene["rows"].as_array().map_or(&[][..], Vec::as_slice);
     let first = rows.first().and_then(median).context("the first row has no speed")?;
-    let has_use = rows.iter().any(|row| row["in_use"].is_f64());
+    let mut more: Vec<(&str, &str, Words)> = vec![
+        ("samples per pixel", "samples_per_pixel", |samples| samples.to_string()),
+        ("lanes in use", "lanes_in_use", percent),
+        ("lanes in use", "in_use", percent),
+    ];
+    more.retain(|(_, key, _)| rows.iter().any(|row| row[*key].is_number()));
     let row = |row: &Value| {
         let ratio = shown(median(row), |speed| format!("{:.2}", speed / first));
         let mut cells = vec![html! { (text(&row["name"])) }, speed(row, rows), ratio];
-        cells.extend(has_use.then(|| shown(row["in_use"].as_f64(), percent)));
+        cells.extend(more.iter().map(|(_, key, words)| shown(row[*key].as_f64(), words)));
         cells
     };
+    let [width, height, depth, spheres] = ["width", "height", "max_depth", "spheres"].map(|key| &scene[key]);
+    let name = text(&scene["scene"]);
+    let bounces = depth.as_u64().unwrap_or(1) - 1;
+    let about = match scene["about"].as_str() {
+        Some(about) => about.to_owned(),
+        None => format!("{name}, {width} × {height}, at most {bounces} bounces, {spheres} spheres."),
+    };
     let caption = html! { (about) " Median and range of the runs. " (origin(kept)) };
-    let columns = ["who traces what", SPEED, "× the first", "lanes in use"];
-    Ok(table(about, &caption, &columns[..if has_use { 4 } else { 3 }], rows.iter().map(row)))
+    let mut columns = vec!["way of tracing", SPEED, "× the first"];
+    columns.extend(more.iter().map(|(heading, ..)| heading));
+    Ok(table(&about, &caption, &columns, rows.iter().map(row)))
 }
 
 /// Times to both errors in all scenes, from the JSON of `weekender report`.
@@ -178,8 +163,9 @@ fn error_table(kept: &Kept) -> Result<Markup> {
                 shown(curve.slope, |[slope, _]| format!("{slope:.2}").replace('-', "−")),
             ];
             row.extend(curve.times.iter().map(|crossing| {
-                let mark = |is_extrapolated| if is_extrapolated { "~" } else { "" };
-                shown(crossing.as_ref(), |at| format!("{}{} s", mark(at.is_extrapolated), digits(at.time, 3)))
+                shown(crossing.as_ref(), |at| {
+                    format!("{}{} s", if at.is_extrapolated { "~" } else { "" }, digits(at.time, 3))
+                })
             }));
             row.push(shown(base.zip(time(curve)), |(base, own)| format!("{:.1}", base / own)));
             rows.push(row);
@@ -230,7 +216,7 @@ fn report_of(kept: &Kept) -> Result<report::Data> {
 const SPEED: &str = "million paths per second";
 
 /// A table that scrolls in its own box where it is wider than the page. A row's first cell is its head; a row of one is
-/// the head of those below it, and the last cell of a short one is as wide as the rest.
+/// the head of those below it.
 fn table(name: &str, caption: &Markup, columns: &[&str], rows: impl Iterator<Item = Vec<Markup>>) -> Markup {
     html! {
         figure .measured {
@@ -239,16 +225,10 @@ fn table(name: &str, caption: &Markup, columns: &[&str], rows: impl Iterator<Ite
                     thead { tr { @for column in columns { th scope="col" .bars[*column == SPEED] { (column) } } } }
                     tbody {
                         @for row in rows {
-                            tr .group[row.len() == 1] {
-                                @let rest = columns.len() + 1 - row.len();
-                                @for (place, cell) in row.iter().enumerate() {
-                                    @let span = (rest > 1 && place + 1 == row.len()).then_some(rest);
-                                    @if place == 0 {
-                                        th scope=(if row.len() == 1 { "colgroup" } else { "row" }) colspan=[span] { (cell) }
-                                    } @else {
-                                        td .text[span.is_some()] colspan=[span] { (cell) }
-                                    }
-                                }
+                            @if let [head] = row.as_slice() {
+                                tr .group { th scope="colgroup" colspan=(columns.len()) { (head) } }
+                            } @else {
+                                tr { th scope="row" { (row[0]) } @for cell in &row[1..] { td { (cell) } } }
                             }
                         }
                     }
@@ -282,10 +262,6 @@ fn speed(row: &Value, rows: &[Value]) -> Markup {
             }
         }
     }
-}
-
-fn items(json: &Value) -> &[Value] {
-    json.as_array().map_or(&[], Vec::as_slice)
 }
 
 fn median(row: &Value) -> Option<f64> {
@@ -340,49 +316,28 @@ mod tests {
     }
 
     #[test]
-    fn benchmark_table_rows() {
-        let speeds = |median: f64| json!({"median": median, "min": 0.5 * median, "max": 2.0 * median});
-        let row = |name: &str, speed: Value, skipped: Option<&str>| json!({"name": name, "paths_per_second": speed, "skipped": skipped, "lanes_in_use": 0.875, "samples_per_pixel": 14, "ratio_to_baseline": 8.0});
-        let bench = |schema: u32| {
-            let rows = [
-                row("C89, cc -O2, 1 thread", speeds(5e6), None),
-                row("avx2, 8 lanes, 3 threads", speeds(40e6), None),
-                row("other GPU", Value::Null, Some("it has no memory")),
-            ];
-            let scene = json!({"scene": "book", "width": 200, "height": 113, "max_depth": 50, "spheres": 485, "rows": rows});
-            json!({"schema": schema, "machine": {"processor": "A CPU", "cores": 4}, "scenes": [scene]})
-        };
-        let html = speed_tables(&kept(&bench(measure::SCHEMA))).unwrap().into_string();
+    fn tables_compare_with_first_row() {
+        let row = |name: &str, speed: f64, used: Option<f64>| json!({"name": name, "paths_per_second": {"median": speed, "min": 0.5 * speed, "max": 2.0 * speed}, "in_use": used});
+        let table = |json: Value| speed_tables(&kept(&json)).map(Markup::into_string);
+        let mut c = row("C89, cc -O2, 1 thread", 5e6, None);
+        c["samples_per_pixel"] = 14.into();
+        let bench = json!({"scene": "book", "max_depth": 50, "rows": [c, row("8 lanes", 40e6, Some(0.875))]});
+        let machine = json!({"processor": "A CPU", "cores": 4});
+        let html = table(json!({"machine": machine, "scenes": [bench]})).unwrap();
         assert_eq!(
             rows(&html),
             [
-                &["C89, cc -O2, 1 thread", "14", "5.00 2.50–10.0", "8.00", "87.5 %"][..],
-                &["avx2, 8 lanes, 3 threads", "14", "40.0 20.0–80.0", "8.00", "87.5 %"],
-                &["other GPU", "not measured: it has no memory"],
+                ["C89, cc -O2, 1 thread", "5.00 2.50–10.0", "1.00", "14", ""],
+                ["8 lanes", "40.0 20.0–80.0", "8.00", "", "87.5 %"]
             ]
         );
-        assert!(
-            html.contains("--share:0.125") && html.contains("Measured on 1 May, A CPU, 4 cores, Debian, by "),
-            "{html}"
-        );
-        let refused = speed_tables(&kept(&bench(99))).unwrap_err().to_string();
-        assert!(refused.contains("no benchmark of version"), "{refused}");
-    }
-
-    #[test]
-    fn comparison_uses_first_row() {
-        let row = |name: &str, median: f64, in_use: Option<f64>| json!({"name": name, "paths_per_second": {"median": median, "min": 1e6, "max": 9e6}, "in_use": in_use});
-        let html = |rows: &[Value]| {
-            let json = json!({"about": "Mappings.", "machine": "a GPU", "rows": rows});
-            comparison(&kept(&json)).map(Markup::into_string)
-        };
-        let found = rows(&html(&[row("one", 2e6, None), row("two", 8e6, Some(0.625))]).unwrap());
-        assert_eq!(
-            found,
-            [["one", "2.00 1.00–9.00", "1.00", ""], ["two", "8.00 1.00–9.00", "4.00", "62.5 %"]]
-        );
-        assert!(!html(&[row("one", 2e6, None)]).unwrap().contains("lanes in use"));
-        assert!(html(&[]).is_err());
+        for part in ["--share:0.125", "at most 49 bounces", "Measured on 1 May, A CPU, 4 cores, Debian, by "]
+        {
+            assert!(html.contains(part), "{part}: {html}");
+        }
+        let html = table(json!({"about": "Ways.", "rows": [row("one", 2e6, None)]})).unwrap();
+        assert!(html.contains("Ways.") && !html.contains("lanes in use"), "{html}");
+        assert!(table(json!({"rows": []})).is_err());
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The command line.
 
-use crate::figure::Figure;
+use crate::figure::{FIGURES, Figure};
+use crate::picture::Picture;
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use std::path::PathBuf;
@@ -32,33 +33,24 @@ pub struct Options {
 }
 
 impl Options {
-    pub fn index(&self) -> PathBuf {
-        self.out.join("index.html")
+    /// The file or folder for a reader to open.
+    pub fn made(&self) -> PathBuf {
+        self.out.join(if self.only.is_empty() { "index.html" } else { "figures" })
     }
 
-    /// The directory of the stages' pictures.
-    pub fn figures(&self) -> PathBuf {
-        self.out.join("figures")
-    }
-
-    /// The stages to render, in the book's order.
-    pub fn stages(&self) -> impl Iterator<Item = &'static Stage> {
-        let is_named = |stage: &Stage, id: &String| {
-            stage.id == id || Figure::find(id).is_some_and(|figure| figure.shows(stage.id))
-        };
-        let is_chosen =
-            move |stage: &&Stage| self.only.is_empty() || self.only.iter().any(|id| is_named(stage, id));
-        Stage::ALL.iter().filter(is_chosen)
+    /// The stills to render, in the book's order.
+    pub fn stills(&self) -> Vec<Picture> {
+        let shows = |id: &str, stage: &Stage| Figure::find(id).is_some_and(|figure| figure.shows(stage.id));
+        let is_named = |stage: &Stage| self.only.iter().any(|id| stage.id == id || shows(id, stage));
+        let chosen = Stage::ALL.iter().filter(|stage| self.only.is_empty() || is_named(stage));
+        chosen.map(|stage| Picture::still(stage, self.quick)).collect()
     }
 }
 
 /// The ids of all figures and stages.
 fn ids() -> PossibleValuesParser {
-    let figures = Figure::all().iter().map(|figure| figure.id.as_str());
-    let mut ids: Vec<&str> = figures.chain(Stage::ALL.iter().map(|stage| stage.id)).collect();
-    ids.sort_unstable();
-    ids.dedup();
-    PossibleValuesParser::new(ids)
+    let figures = FIGURES.iter().map(|figure| figure.id.as_str());
+    PossibleValuesParser::new(figures.chain(Stage::ALL.iter().map(|stage| stage.id)))
 }
 
 #[cfg(test)]
@@ -69,7 +61,7 @@ mod tests {
     fn figures_and_stages_can_be_chosen() {
         let stages = |only: &[&str]| {
             let options = Options::try_parse_from([&["companion"], only].concat());
-            options.map(|options| options.stages().map(|stage| stage.id).collect::<Vec<_>>())
+            options.map(|options| options.stills().iter().map(|picture| picture.stage.id).collect::<Vec<_>>())
         };
         assert_eq!(stages(&[]).unwrap().len(), Stage::ALL.len());
         assert_eq!(stages(&["--only", "book,fuzz,metal"]).unwrap(), ["metal", "metal-fuzzy", "book"]);

@@ -1,10 +1,8 @@
 //! The page around the chapters.
 
-use crate::agreement;
 use crate::chapter::Chapter;
 use crate::check;
 use crate::directive;
-use crate::letters;
 use crate::library::Fault;
 use crate::live;
 use crate::picture::Picture;
@@ -49,16 +47,14 @@ pub struct Page {
 
 /// Renders everything. Fails with the first [`Fault`] of the texts, or if a stage has no data for a browser.
 pub fn render(site: &Site, is_quick: bool) -> Result<Page> {
-    letters::check(&site.letters, &site.chapters)?;
     let mut uses = Uses::default();
     let chapters = html! { @for chapter in &site.chapters { (section(site, chapter, &mut uses)?) } };
     let count = |part: &str| chapters.0.matches(part).count();
     let content = html! { (cover(count(" data-stage=\"") - count("class=\"try\""), count("class=\"drawn\""), is_quick, &mut uses)?) (chapters) };
-    site.check(&uses, &content.0)?;
     let live = live::live_data(Stage::ALL)?;
     let fonts = serde_json::json!(site.library.read(&format!("{ASSETS}/more-fonts.css"))?);
     let later = format!("var later = {{ fonts: {fonts}, live: {live} }};\n");
-    uses.pictures.push(Picture::small(cover_stage()));
+    uses.add(Picture::small(cover_stage()));
     let html = document(site, &content)?.into_string();
     Ok(Page { html, later, pictures: uses.pictures })
 }
@@ -70,11 +66,9 @@ pub fn render(site: &Site, is_quick: bool) -> Result<Page> {
 pub fn check_replaceable(path: &Path) -> Result<()> {
     if path.exists() {
         check_writable(path)?;
-        ensure!(
-            fs::read_to_string(path).is_ok_and(|page| page.contains(GENERATOR)),
-            "{}: there is a page that Weekender did not write; move it away, or choose another directory with --out",
-            path.display()
-        );
+        let is_own = fs::read_to_string(path).is_ok_and(|page| page.contains(GENERATOR));
+        let remedy = "move it away, or choose another directory with --out";
+        ensure!(is_own, "{}: there is a page that Weekender did not write; {remedy}", path.display());
     }
     Ok(())
 }
@@ -135,7 +129,7 @@ fn cover(live: usize, drawn: usize, is_quick: bool, uses: &mut Uses) -> Result<M
                 "The book, chapter by chapter: every picture rendered by the program, every excerpt its real code. "
                 (drawn) " drawings move, and in a browser with WebGPU " (live + 1) " pictures run. Then: lanes, threads and GPUs, measured."
             }
-            @if check::is_there() { div .check-box {} }
+            @if check::find().is_some() { div .check-box {} }
             figure .figure id="figure-cover" {
                 div .panels { (panel) }
                 figcaption {
@@ -176,7 +170,8 @@ fn navigation(site: &Site) -> Markup {
                             @for chapter in chapters {
                                 li {
                                     a href={ "#" (chapter.id) } {
-                                        span .number { (chapter.number_prefix()) } (chapter.short())
+                                        span .number { @if let Some(number) = chapter.shown_number() { (number) " " } }
+                                        (chapter.short())
                                     }
                                 }
                             }
@@ -191,7 +186,6 @@ fn navigation(site: &Site) -> Markup {
 fn section(site: &Site, chapter: &Chapter, uses: &mut Uses) -> Result<Markup, Fault> {
     let (id, title) = (&chapter.id, &chapter.facts.title);
     let text = prose::chapter(site, chapter, directive::html, uses)?;
-    agreement::check(&site.library, chapter)?;
     let of_book = |number| {
         let found = heading(number).map(|heading| (number, book_url(number), heading));
         found.ok_or_else(|| Fault::new(&chapter.file, 1, format!("the book has no chapter {number:?}")))

@@ -1,40 +1,50 @@
-//! A picture of the page's own: what to render, and how.
+//! A picture of the page: a stage's still, or another that the page makes of a stage.
 
+use crate::directive::Part;
 use anyhow::{Context, Result};
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder};
 use maud::{Markup, html};
 use std::collections::BTreeSet;
 use std::fs;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
-use weekender::comparison::check::{Hypothesis, Mistake, Studio};
-use weekender::denoise;
-use weekender::film::Checksum;
+use weekender::comparison::check::Mistake;
 use weekender::film::checkpoint::SAMPLE_VERSION;
+use weekender::film::{Checksum, SOFTWARE, key};
 use weekender::job::recipe::{Recipe, file::to_toml};
-use weekender::job::render::Renderer;
-use weekender::render_cpu::{CpuOptions, CpuRenderer};
+use weekender::job::saved::is_whole_frame;
 use weekender::stages::{Setup, Stage};
-use weekender::system::files::replace_file;
 
+/// Pictures other than the stages' stills.
 pub const FOLDER: &str = "figures/more";
 
-/// Width of a picture that is denoised, pixels.
-pub const NOISY_WIDTH: u32 = 480;
+/// Width of a picture for a link that sets a stage, pixels.
+const SET_WIDTH: u32 = 320;
 
-/// Width and samples per pixel of a still for a link that sets a picture.
-const STILL_WIDTH: u32 = 320;
-const STILL_SAMPLES: u64 = 64;
+/// Maximum width and samples per pixel of a quick still or a picture that is denoised.
+pub const QUICK_WIDTH: u32 = 480;
+const QUICK_SAMPLES: u64 = 64;
+
+/// Minimum width of a full still, pixels: almost twice the pixels that most figures are wide.
+const FULL_WIDTH: u32 = 800;
+
+/// Samples per pixel of a full still. The estimated error is then at most 0.003, about half an 8-bit step.
+const FULL_SAMPLES: u64 = 1024;
+
+/// Code that changes pictures without changing a sample.
+const SOURCES: [&str; 4] = [
+    include_str!("../../src/comparison/check/mistakes.rs"),
+    include_str!("../../src/comparison/check/tracer.rs"),
+    include_str!("../../src/denoise/filter.rs"),
+    include_str!("../../src/denoise/mod.rs"),
+];
 
 #[derive(Clone, Debug)]
 pub struct Picture {
-    stage: &'static Stage,
-    name: &'static str,
+    pub stage: &'static Stage,
+    /// `None` for the stage's still.
+    name: Option<&'static str>,
     pub recipe: Recipe,
-    tracer: Tracer,
-    /// The part to keep: left, top, width and height.
+    pub tracer: Tracer,
+    /// `None` for all of it.
     crop: Option<[u32; 4]>,
 }
 
@@ -47,133 +57,104 @@ pub enum Tracer {
 }
 
 impl Picture {
-    pub fn new(
-        stage: &'static Stage,
-        name: &'static str,
-        (width, samples): (u32, u64),
-        tracer: Tracer,
-    ) -> Self {
+    /// A stage with its own settings in the size and with the samples of a still.
+    pub fn still(stage: &'static Stage, is_quick: bool) -> Self {
+        let mut recipe = stage.recipe();
+        if !stage.setup.is_about_pixels {
+            let (settings, samples) = (&mut recipe.settings, &mut recipe.samples_per_pixel);
+            let width =
+                if is_quick { settings.width.min(QUICK_WIDTH) } else { settings.width.max(FULL_WIDTH) };
+            settings.height = (settings.height * width).div_ceil(settings.width);
+            settings.width = width;
+            // A stage with one sample sends it through the pixel's centre; more would be the same.
+            if *samples > 1 {
+                *samples = if is_quick { QUICK_SAMPLES.min(*samples) } else { FULL_SAMPLES };
+            }
+        }
+        Picture { stage, name: None, recipe, tracer: Tracer::Fast, crop: None }
+    }
+
+    pub fn new(stage: &'static Stage, name: &'static str, size: (u32, u64), tracer: Tracer) -> Self {
+        let (width, samples) = size;
         let mut recipe = stage.recipe();
         let settings = &mut recipe.settings;
         (settings.width, settings.height) = (width, width * settings.height / settings.width);
         recipe.samples_per_pixel = samples;
-        Picture { stage, name, recipe, tracer, crop: None }
+        Picture { stage, name: Some(name), recipe, tracer, crop: None }
     }
 
     /// Only a part, in pixels of the stage's own size.
-    pub fn cropped(mut self, crop: Option<[u32; 4]>) -> Self {
-        if crop.is_some() {
+    pub fn cropped(mut self, part: Part) -> Self {
+        if let Part::Crop(crop) = part {
             let Setup { width, height, .. } = self.stage.setup;
-            (self.recipe.settings.width, self.recipe.settings.height, self.crop) = (width, height, crop);
+            (self.recipe.settings.width, self.recipe.settings.height, self.crop) =
+                (width, height, Some(crop));
         }
         self
     }
 
-    /// The name holds fingerprints of the recipe and of the code that changes such pictures, so a file that exists is up to
-    /// date.
+    /// The path in the page's folder. Except for a still, which keeps its name, it holds fingerprints of the recipe and of the
+    /// code that changes such pictures, so a file that exists is up to date.
     pub fn file(&self) -> String {
+        let id = self.stage.id;
+        let Some(name) = self.name else { return format!("figures/{id}.png") };
         let mut checksum = Checksum::default();
         checksum.text(to_toml(&self.recipe).as_bytes());
         checksum.word(SAMPLE_VERSION.into());
-        checksum.text(format!("{:?}", self.crop).as_bytes());
-        checksum.text(
-            match self.tracer {
-                Tracer::Plain(_) => concat!(
-                    include_str!("../../src/comparison/check/mistakes.rs"),
-                    include_str!("../../src/comparison/check/tracer.rs")
-                ),
-                Tracer::Denoised => concat!(
-                    include_str!("../../src/denoise/filter.rs"),
-                    include_str!("../../src/denoise/mod.rs")
-                ),
-                Tracer::Fast => "",
-            }
-            .as_bytes(),
-        );
-        format!("{FOLDER}/{}-{}-{:.8}.png", self.stage.id, self.name, checksum.finish())
+        checksum.text(format!("{:?} {:?}", self.crop, matches!(self.tracer, Tracer::Denoised)).as_bytes());
+        SOURCES.iter().for_each(|source| checksum.text(source.as_bytes()));
+        format!("{FOLDER}/{id}-{name}-{:.8}.png", checksum.finish())
+    }
+
+    /// Whether the file is up to date. A full still satisfies a quick order.
+    pub fn is_done(&self, out: &Path) -> bool {
+        let path = out.join(self.file());
+        let is_made_of = |recipe: &Recipe| {
+            let samples = recipe.samples_per_pixel.to_string();
+            is_whole_frame(&path, recipe, SOFTWARE, (key::SAMPLES, &samples))
+        };
+        match self.name {
+            Some(_) => path.exists(),
+            None => is_made_of(&self.recipe) || is_made_of(&Picture::still(self.stage, false).recipe),
+        }
+    }
+
+    pub fn is_still(&self) -> bool {
+        self.name.is_none()
+    }
+
+    pub fn pixels(&self) -> u64 {
+        u64::from(self.recipe.settings.width) * u64::from(self.recipe.settings.height)
+    }
+
+    /// The paths of all its samples.
+    pub fn paths(&self) -> u64 {
+        self.recipe.samples_per_pixel * self.pixels()
+    }
+
+    /// The part to keep: left, top, width and height.
+    pub fn part(&self) -> [u32; 4] {
+        self.crop.unwrap_or([0, 0, self.recipe.settings.width, self.recipe.settings.height])
     }
 
     /// A smooth and small picture of a stage.
     pub fn small(stage: &'static Stage) -> Self {
-        Picture::new(stage, "denoised", (NOISY_WIDTH, 64), Tracer::Denoised)
+        Picture::new(stage, "denoised", (QUICK_WIDTH, QUICK_SAMPLES), Tracer::Denoised)
     }
 
     /// A small picture of a stage whose recipe will be changed.
-    pub fn still(stage: &'static Stage) -> Self {
-        Picture::new(
-            stage,
-            "try",
-            (STILL_WIDTH, STILL_SAMPLES.min(stage.setup.samples_per_pixel)),
-            if stage.setup.samples_per_pixel > 1 { Tracer::Denoised } else { Tracer::Fast },
-        )
-    }
-
-    /// Its file and width, as candidates for a place have it.
-    pub fn candidate(&self) -> String {
-        format!("{} {}w", self.file(), self.recipe.settings.width)
-    }
-
-    /// Renders the picture unless it exists.
-    pub fn render(&self, out: &Path) -> Result<()> {
-        let path = out.join(self.file());
-        if path.exists() {
-            return Ok(());
-        }
-        let [width, height] = [self.recipe.settings.width, self.recipe.settings.height];
-        let bytes = match self.tracer {
-            Tracer::Plain(mistake) => mistaken(self.stage, self.recipe.clone(), mistake)?,
-            Tracer::Fast => sampled(&self.recipe, false)?,
-            // A few samples are to be seen as they are.
-            Tracer::Denoised => sampled(&self.recipe, self.recipe.samples_per_pixel >= 16)?,
-        };
-        let rows = bytes.chunks(3 * width as usize);
-        let [left, top, width, height] = self.crop.unwrap_or([0, 0, width, height]);
-        let row = |row: &[u8]| {
-            row.iter().skip(3 * left as usize).take(3 * width as usize).copied().collect::<Vec<u8>>()
-        };
-        let bytes: Vec<u8> = rows.skip(top as usize).take(height as usize).flat_map(row).collect();
-        let mut png = Vec::new();
-        let encoder = PngEncoder::new_with_quality(&mut png, CompressionType::Best, FilterType::Adaptive);
-        encoder.write_image(&bytes, width, height, ExtendedColorType::Rgb8)?;
-        Ok(replace_file(&path, |writer| writer.write_all(&png))?)
+    pub fn set(stage: &'static Stage) -> Self {
+        let samples = QUICK_SAMPLES.min(stage.setup.samples_per_pixel);
+        Picture::new(stage, "try", (SET_WIDTH, samples), Tracer::Denoised)
     }
 
     pub fn img(&self, alt: &str) -> Markup {
-        let settings = self.recipe.settings;
-        let [_, _, width, height] = self.crop.unwrap_or([0, 0, settings.width, settings.height]);
+        let [_, _, width, height] = self.part();
         html! {
             img .pixels[self.crop.is_some()] src=(self.file()) width=(width) height=(height) loading="lazy"
                 alt={ (self.stage.title) ": " (alt) };
         }
     }
-}
-
-fn mistaken(stage: &'static Stage, recipe: Recipe, mistake: Option<&'static Mistake>) -> Result<Vec<u8>> {
-    let (size, samples) = ([recipe.settings.width, recipe.settings.height], recipe.samples_per_pixel);
-    let stop = AtomicBool::new(false);
-    let right = Hypothesis::right(stage, recipe, size);
-    let picture = match mistake {
-        Some(mistake) => {
-            mistake.pictures(&right).into_iter().next().context("a mistake without a picture")?
-        }
-        None => right,
-    };
-    let linear = Studio::new(&stop)?.picture(&picture, samples)?;
-    let mut bytes = picture.written.bytes_of(&linear, size).concat();
-    if picture.written.wraps {
-        let values = bytes.iter_mut().zip(linear.as_flattened());
-        values.filter(|(_, linear)| **linear >= 1.0).for_each(|(byte, _)| *byte = 0);
-    }
-    Ok(bytes)
-}
-
-fn sampled(recipe: &Recipe, is_denoised: bool) -> Result<Vec<u8>> {
-    let job = recipe.job()?;
-    let mut film = job.new_film();
-    let mut renderer = CpuRenderer::new(CpuOptions::default())?;
-    renderer.accumulate(&job, 0..recipe.samples_per_pixel, &mut film, &AtomicBool::new(false))?;
-    let film = if is_denoised { denoise::of_film(&film)?.film } else { film };
-    Ok(film.to_rgb8(recipe.rules.transfer))
 }
 
 /// Removes pictures that the page does not use.
@@ -186,4 +167,35 @@ pub fn remove_others(out: &Path, pictures: &[Picture]) -> Result<()> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stills_keep_aspect_ratio() {
+        for stage in Stage::ALL {
+            let own = stage.recipe();
+            for is_quick in [true, false] {
+                let recipe = Picture::still(stage, is_quick).recipe;
+                recipe.job().expect(stage.id);
+                let [shape, own_shape] = [&recipe.settings, &own.settings]
+                    .map(|settings| f64::from(settings.width) / f64::from(settings.height));
+                assert!((shape / own_shape - 1.0).abs() < 0.01, "{}: {shape}", stage.id);
+                assert_eq!(recipe.samples_per_pixel == 1, own.samples_per_pixel == 1, "{}", stage.id);
+                if stage.setup.is_about_pixels {
+                    assert_eq!(recipe, own);
+                }
+            }
+        }
+        let sizes = |id: &str| {
+            [true, false].map(|is_quick| {
+                let recipe = Picture::still(Stage::find(id).unwrap(), is_quick).recipe;
+                (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel)
+            })
+        };
+        assert_eq!(sizes("book"), [(480, 270, 64), (1200, 675, 1024)]);
+        assert_eq!(sizes("sky"), [(480, 270, 1), (800, 450, 1)]);
+    }
 }

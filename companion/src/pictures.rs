@@ -1,9 +1,10 @@
 //! The page's own pictures beside the gallery's stills: what common mistakes look like, as `weekender check` renders
 //! them, and a picture before and after denoising.
 
-use crate::picture::{NOISY_WIDTH, Picture, Tracer};
+use crate::directive::Part;
+use crate::picture::{Picture, QUICK_WIDTH, Tracer};
 use crate::uses::Uses;
-use crate::words::typographic;
+use crate::words::{numbered, typographic};
 use anyhow::{Context, Result};
 use maud::{Markup, html};
 use weekender::comparison::check::{MISTAKES, Mistake};
@@ -14,21 +15,21 @@ use weekender::stages::Stage;
 const SMALL: (u32, u64) = (180, 128);
 
 /// A row of pictures: the stage as it should be, and with each of these mistakes, whose ids are words.
-/// `crop` is the part that shows them, at the size of the stage.
-pub fn mistakes(stage: &str, ids: &str, crop: Option<[u32; 4]>, uses: &mut Uses) -> Result<Markup> {
+/// `part` shows them, at the size of the stage.
+pub fn mistakes(stage: &str, ids: &str, part: Part, uses: &mut Uses) -> Result<Markup> {
     let stage = Stage::find(stage)?;
     let recipe = stage.recipe();
     let find = |id| {
         let is_it = |mistake: &&Mistake| mistake.id == id && (mistake.applies)(&recipe);
         MISTAKES.iter().find(is_it).with_context(|| format!("{} can have no mistake {id:?}", stage.id))
     };
-    let plain = |name, mistake| Picture::new(stage, name, SMALL, Tracer::Plain(mistake)).cropped(crop);
+    let plain = |name, mistake| Picture::new(stage, name, SMALL, Tracer::Plain(mistake)).cropped(part);
     let wrong: Result<Vec<&'static Mistake>> = ids.split_whitespace().map(find).collect();
     Ok(html! {
         ul .mistakes data-has-right {
-            (entry(plain("right", None), "as it should be", "", uses))
+            (entry(plain("right", None), "as it should be", None, uses))
             @for mistake in wrong? {
-                (entry(plain(mistake.id, Some(mistake)), mistake.title, mistake.remedy, uses))
+                (entry(plain(mistake.id, Some(mistake)), mistake.title, Some(mistake), uses))
             }
         }
     })
@@ -39,7 +40,7 @@ pub fn variants(
     stage: &str,
     numbers: &str,
     is_of_samples: bool,
-    crop: Option<[u32; 4]>,
+    part: Part,
     uses: &mut Uses,
 ) -> Result<Markup> {
     let stage = Stage::find(stage)?;
@@ -47,7 +48,7 @@ pub fn variants(
     let mut shown = |number: u32| {
         let mut picture =
             Picture::new(stage, if is_of_samples { "samples" } else { "limit" }, SMALL, Tracer::Fast)
-                .cropped(crop);
+                .cropped(part);
         let title = if is_of_samples {
             picture.recipe.samples_per_pixel = number.into();
             counted(number.into(), "sample") + " per pixel"
@@ -55,23 +56,23 @@ pub fn variants(
             picture.recipe.settings.max_depth = number + 1;
             format!("at most {}", counted(number.into(), "bounce"))
         };
-        entry(picture, &title, "", uses)
+        entry(picture, &title, None, uses)
     };
     Ok(html! { ul .mistakes { @for number in numbers.context("give whole numbers")? { (shown(number)) } } })
 }
 
-fn entry(picture: Picture, title: &str, remedy: &str, uses: &mut Uses) -> Markup {
+fn entry(picture: Picture, title: &str, mistake: Option<&Mistake>, uses: &mut Uses) -> Markup {
     let title = typographic(title);
     let mut letters = title.chars();
     let title: String = letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect();
     let shown = html! {
-        li {
+        li data-mistake=[mistake.map(|mistake| mistake.id)] {
             (picture.img(&title))
             p {
                 strong { (title) "." }
-                @if !remedy.is_empty() {
+                @if let Some(mistake) = mistake {
                     " Remedy: "
-                    @for (index, part) in remedy.split('`').enumerate() {
+                    @for (index, part) in mistake.remedy.split('`').enumerate() {
                         @if index % 2 == 1 { code { (part) } } @else { (typographic(part)) }
                     }
                     "."
@@ -79,20 +80,25 @@ fn entry(picture: Picture, title: &str, remedy: &str, uses: &mut Uses) -> Markup
             }
         }
     };
-    uses.pictures.push(picture);
+    uses.add(picture);
     shown
 }
 
 /// A stage with few samples, before and after denoising, for a wipe.
-pub fn denoised(stage: &str, samples: &str, uses: &mut Uses) -> Result<Markup> {
+pub fn denoised(stage: &str, samples: &str, caption: &Markup, uses: &mut Uses) -> Result<Markup> {
     let (stage, samples) = (Stage::find(stage)?, samples.parse().context("give the samples per pixel")?);
     let mut panel = |name, tracer, label: &str| {
-        let picture = Picture::new(stage, name, (NOISY_WIDTH, samples), tracer);
-        uses.pictures.push(picture.clone());
+        let picture = Picture::new(stage, name, (QUICK_WIDTH, samples), tracer);
+        uses.add(picture.clone());
         html! { div .panel { (picture.img(label)) p .label { (label) } } }
     };
     let label = format!("{samples} samples per pixel");
     let noisy = panel("noisy", Tracer::Fast, &label);
     let panels = [noisy, panel("denoised", Tracer::Denoised, &(label + ", denoised"))];
-    Ok(html! { div .panels .of-2 { @for panel in panels { (panel) } } })
+    Ok(html! {
+        figure .figure .wide id={ "denoised-" (stage.id) } {
+            div .panels .of-2 { @for panel in panels { (panel) } }
+            (numbered(caption, uses))
+        }
+    })
 }

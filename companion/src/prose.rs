@@ -1,22 +1,24 @@
 //! Markdown to HTML, with the page's own links, directives, formulas and colours.
 
 use crate::chapter::Chapter;
-use crate::figure::Figure;
+use crate::figure::FIGURES;
 use crate::letters;
 use crate::library::{Fault, line_of};
 use crate::live;
 use crate::picture::Picture;
 use crate::site::Site;
 use crate::uses::Uses;
-use crate::words::{code_words, typographic};
+use crate::words::{code_words, is_word, typographic};
 use anyhow::{Context, Result, bail, ensure};
 use math_core::MathDisplay;
 use maud::{Markup, PreEscaped, html};
 use pulldown_cmark::{
     BrokenLink, CodeBlockKind, CowStr, Event, LinkType, Options, Parser, Tag, TagEnd, html as writer,
 };
+use std::collections::btree_map::Entry;
 use std::fmt::Write as _;
 use std::iter::Peekable;
+use std::mem::take;
 use std::ops::Range;
 use std::vec::IntoIter;
 use weekender::stages::{self, Stage};
@@ -67,22 +69,22 @@ impl Place<'_> {
             self.chapter.map(|chapter| &chapter.facts.colours).filter(|colours| !colours.is_empty());
         let Some(colours) = colours else { return html.clone() };
         let mut found = String::new();
-        let mut in_tag = false;
-        // Words, and what is between them.
-        let is_word = |c: char| c.is_alphanumeric() || c == '_';
-        let mut rest = html.0.as_str();
-        while let Some(first) = rest.chars().next() {
-            let end = rest.find(|c| is_word(c) != is_word(first)).unwrap_or(rest.len());
-            let (word, after) = rest.split_at(end);
-            let is_function = after.starts_with('(') || after.starts_with("</span>(");
-            match colours.get(word).filter(|_| !in_tag && !is_function && !found.ends_with('&')) {
-                Some(colour) => drop(write!(found, "<span class=\"q{colour}\">{word}</span>")),
-                None => found.push_str(word),
+        // The text after each tag.
+        for part in html.0.split_inclusive('<').flat_map(|part| part.split_inclusive('>')) {
+            if part.ends_with('>') || found.ends_with("hl-f\">") {
+                found.push_str(part);
+                continue;
             }
-            if let Some(bracket) = word.rfind(['<', '>']) {
-                in_tag = word[bracket..].starts_with('<');
+            for word in part.split_inclusive(|c| !is_word(c)) {
+                let name = word.trim_end_matches(|c| !is_word(c));
+                match colours.get(name).filter(|_| !found.ends_with('&')) {
+                    Some(colour) => {
+                        let _ =
+                            write!(found, "<span class=\"q{colour}\">{name}</span>{}", &word[name.len()..]);
+                    }
+                    None => found.push_str(word),
+                }
             }
-            rest = after;
         }
         // Formulas have no spans.
         PreEscaped(found.replace("<mi><span ", "<mi ").replace("</span></mi>", "</mi>"))
@@ -99,14 +101,27 @@ pub fn chapter(
         let line = chapter.lines_before + line_of(&chapter.body, position);
         Fault::new(&chapter.file, line, format!("{error:#}"))
     })?;
-    let place = Place {
-        file: &chapter.file,
-        lines_before: chapter.lines_before,
-        chapter: Some(chapter),
-        text: &text,
-        directive,
-    };
-    convert(site, &place, uses)
+    let Chapter { file, lines_before, .. } = chapter;
+    let place = Place { file, lines_before: *lines_before, chapter: Some(chapter), text: &text, directive };
+    let html = convert(site, &place, uses)?;
+    check_names(&place, uses)?;
+    Ok(html)
+}
+
+/// Names in a section that shows code must be in the excerpts that are open when the page loads, or the chapter says that
+/// they are found elsewhere.
+fn check_names(place: &Place<'_>, uses: &mut Uses) -> Result<(), Fault> {
+    let (names, words) = (take(&mut uses.names), take(&mut uses.words));
+    let elsewhere = place.chapter.map(|chapter| chapter.facts.elsewhere.as_slice()).unwrap_or_default();
+    for (code, line) in names.iter().filter(|_| !words.is_empty()) {
+        let name = code.split('(').next().unwrap_or_default();
+        if name.chars().all(is_word) && !words.contains(name) && elsewhere.iter().all(|known| known != name) {
+            let remedy = "put the language that has it first, correct the name, or add it to the chapter's list `elsewhere`";
+            let message = format!("`{name}` is not in the code that this section shows first; {remedy}");
+            return Err(Fault::new(place.file, *line, message));
+        }
+    }
+    Ok(())
 }
 
 /// Splits a heading that starts with a section number, such as "6.1 Shading with Surface Normals".
@@ -118,15 +133,9 @@ fn split_heading(heading: &str) -> Option<(&str, &str)> {
 
 /// The anchor for a heading: `What a lane is` becomes `what-a-lane-is`.
 fn slug(heading: &str) -> String {
-    let mut slug = String::new();
-    for c in heading.chars().filter(|c| !matches!(c, '\'' | '’' | '.')) {
-        match c.to_lowercase().next() {
-            Some(c) if c.is_ascii_alphanumeric() => slug.push(c),
-            _ if slug.ends_with('-') || slug.is_empty() => {}
-            _ => slug.push('-'),
-        }
-    }
-    slug.trim_end_matches('-').to_owned()
+    let plain = heading.replace(['\'', '’', '.'], "").to_lowercase();
+    let words = plain.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+    words.collect::<Vec<&str>>().join("-")
 }
 
 type Events<'a> = Peekable<IntoIter<(Event<'a>, Range<usize>)>>;
@@ -226,7 +235,10 @@ impl Converter<'_> {
                     html! { span .formula tabindex="0" role="group" aria-label="Formula" { (formula) } },
                 ));
             }
-            Event::Code(text) => out.push(inline(code_words(&text))),
+            Event::Code(text) => {
+                self.uses.names.push((text.to_string(), self.line));
+                out.push(inline(code_words(&text)));
+            }
             Event::Html(_) | Event::InlineHtml(_) | Event::Start(Tag::Image { .. }) => {
                 bail!("HTML and pictures are not allowed in the text; use Markdown or a directive");
             }
@@ -246,13 +258,11 @@ impl Converter<'_> {
             skip_to(rest, TagEnd::Paragraph);
             return (self.place.directive)(self.site, self.place, inside.trim(), self.uses).map(block);
         }
-        // A lone formula may be wider than the text.
-        let is_formula = text.len() > 4 && text.starts_with("$$") && text.ends_with("$$");
-        let wide = Event::Html("<p class=\"wide\">".into());
-        Ok(if is_formula { wide } else { Event::Start(Tag::Paragraph) })
+        Ok(Event::Start(Tag::Paragraph))
     }
 
     fn heading<'e>(&mut self, level: usize, range: &Range<usize>, rest: &mut Events<'e>) -> Result<Markup> {
+        check_names(self.place, self.uses)?;
         let mut inner = Vec::new();
         let mut plain_text = String::new();
         while let Some((event, at)) = rest.next() {
@@ -265,8 +275,6 @@ impl Converter<'_> {
         }
         let chapter = self.place.chapter.map(|chapter| chapter.id.as_str()).unwrap_or_default();
         let anchor = format!("{chapter}-{}", slug(&plain_text));
-        let is_new = self.uses.anchors.insert(anchor.clone());
-        ensure!(is_new, "another heading has the anchor #{anchor}; choose other words");
         let source = self.place.text[range.clone()].trim_start_matches('#').trim();
         let title = match split_heading(source) {
             Some((number, words)) => Self::book_heading(number, words)?,
@@ -297,26 +305,22 @@ impl Converter<'_> {
     }
 
     fn formula(&self, latex: &str, display: MathDisplay) -> Result<Markup> {
+        let formula = match self.site.formulas.convert_with_local_state(latex.trim(), display) {
+            Ok(converted) => converted.mathml,
+            Err(error) => bail!("the formula {:?} is not understood: {error}", latex.trim()),
+        };
         let chapter = self.place.chapter.map(|chapter| chapter.id.as_str());
-        if let Some(letter) = chapter.and_then(|chapter| letters::unknown(&self.site.letters, chapter, latex))
-        {
+        if let Some(letter) = chapter.and_then(|id| letters::unknown(&self.site.letters, id, &formula)) {
             bail!("{letter} has no meaning in this chapter; add it to {}", letters::FILE);
         }
-        match self.site.formulas.convert_with_local_state(latex.trim(), display) {
-            Ok(converted) => Ok(self.place.coloured(&PreEscaped(converted.mathml))),
-            Err(error) => bail!("the formula {:?} is not understood: {error}", latex.trim()),
-        }
+        Ok(self.place.coloured(&PreEscaped(formula)))
     }
 
     fn code(&self, kind: &CodeBlockKind<'_>, rest: &mut Events<'_>) -> Result<Markup> {
-        let mut code = String::new();
-        for (event, _) in rest.by_ref() {
-            match event {
-                Event::Text(text) => code.push_str(&text),
-                Event::End(TagEnd::CodeBlock) => break,
-                _ => {}
-            }
-        }
+        let inside = rest.by_ref().map(|(event, _)| event);
+        let inside = inside.take_while(|event| *event != Event::End(TagEnd::CodeBlock));
+        let text = |event| if let Event::Text(text) = event { Some(text.into_string()) } else { None };
+        let code: String = inside.filter_map(text).collect();
         let language = match kind {
             CodeBlockKind::Fenced(language) if !language.is_empty() => language,
             _ => "text",
@@ -329,9 +333,8 @@ impl Converter<'_> {
         let mut links = Vec::new();
         for key in target.trim_start_matches(CITATION).split(';') {
             let key = key.trim().trim_start_matches('@');
-            let reference = self.site.reference(key);
-            let (number, entry) =
-                reference.with_context(|| format!("references.toml has no entry {key:?}"))?;
+            let found = (1..).zip(&self.site.references).find(|(_, entry)| entry.key == key);
+            let (number, entry) = found.with_context(|| format!("references.toml has no entry {key:?}"))?;
             let title = format!("{}: {}", entry.value.authors, entry.value.title);
             links.push((number, html! { a href={ "#ref-" (key) } title=(title) { (number) } }));
         }
@@ -353,41 +356,38 @@ impl Converter<'_> {
                     site.terms.iter().any(|entry| entry.key == rest),
                     "the glossary has no term {rest:?}"
                 );
-                let id = self.is_first_use(rest).then(|| format!("use-{rest}"));
-                opened("term", &format!("#term-{rest}"), "", id)
+                let mut first = None;
+                if let (Some(chapter), Entry::Vacant(term)) =
+                    (self.place.chapter, self.uses.terms.entry(rest.to_owned()))
+                {
+                    term.insert(chapter.short().to_owned());
+                    first = Some(format!("use-{rest}"));
+                }
+                opened("term", &format!("#term-{rest}"), first)
             }
             "page" => {
                 let (name, fragment) = rest.split_once('#').unwrap_or((rest, ""));
-                let chapter = site.chapters.iter().find(|chapter| chapter.id == name);
-                let chapter = chapter.with_context(|| format!("the page has no chapter {name:?}"))?;
+                let is_there = site.chapters.iter().any(|chapter| chapter.id == name);
+                ensure!(is_there, "the page has no chapter {name:?}");
                 let heading = stages::heading(fragment).map(|heading| format!("{fragment} {heading}"));
                 let anchor = match &heading {
                     Some(heading) => format!("{name}-{}", slug(heading)),
                     None if fragment.is_empty() => name.to_owned(),
                     None => format!("{name}-{fragment}"),
                 };
-                let title = match (heading, chapter.shown_number()) {
-                    (Some(heading), _) => format!("Section {heading}"),
-                    (None, Some(number)) => format!("Chapter {number}: {}", chapter.facts.title),
-                    (None, None) => chapter.facts.title.clone(),
-                };
-                self.note_target(&anchor);
-                opened("", &format!("#{anchor}"), &title, None)
+                opened("", &format!("#{anchor}"), None)
             }
             "live" => {
                 let (id, settings) = rest.split_once('?').unwrap_or((rest, ""));
-                let figure = Figure::all().iter().find(|figure| figure.shows(id));
+                let figure = FIGURES.iter().find(|figure| figure.shows(id));
                 let figure = figure.with_context(|| format!("no figure shows the stage {id:?}"))?;
                 let anchor = format!("figure-{}", figure.id);
-                self.note_target(&anchor);
                 let stage = Stage::find(id)?;
                 // For browsers without WebGPU.
-                let mut still = Picture::still(stage);
+                let mut still = Picture::set(stage);
                 live::set(&mut still.recipe, settings)?;
                 let file = still.file();
-                if self.uses.pictures.iter().all(|picture| picture.file() != file) {
-                    self.uses.pictures.push(still);
-                }
+                self.uses.add(still);
                 unclosed(
                     &html! { a .try href={ "#" (anchor) } data-stage=(id) data-set=(settings) data-still=(file) {} },
                 )
@@ -397,11 +397,8 @@ impl Converter<'_> {
                 // The page has no copy of the repository, so it cites the path like a reference.
                 return Ok((html! {}, html! { " " span .cite { "[" code .path { (rest) } "]" } }));
             }
-            "https" | "mailto" => opened("", target, "", None),
-            "" if target.starts_with('#') => {
-                self.note_target(&rest[1..]);
-                opened("", target, "", None)
-            }
+            "https" | "mailto" => opened("", target, None),
+            "" if target.starts_with('#') => opened("", target, None),
             _ => {
                 let kinds = "glossary:TERM, page:CHAPTER, live:STAGE?SLIDER=VALUE, source:PATH, [@REFERENCE] or https://";
                 let is_inline = link_type == LinkType::Inline;
@@ -411,25 +408,10 @@ impl Converter<'_> {
         };
         Ok((open, PreEscaped("</a>".to_owned())))
     }
-
-    /// Notes a link to a term; returns whether it is the chapter's first.
-    fn is_first_use(&mut self, term: &str) -> bool {
-        let Some(chapter) = self.place.chapter else { return false };
-        let is_first = !self.uses.terms.contains_key(term);
-        self.uses.terms.entry(term.to_owned()).or_insert_with(|| chapter.short().to_owned());
-        is_first
-    }
-
-    fn note_target(&mut self, anchor: &str) {
-        self.uses.targets.push((anchor.to_owned(), self.place.file.to_owned(), self.line));
-    }
 }
 
-fn opened(class: &str, href: &str, title: &str, id: Option<String>) -> Markup {
-    unclosed(&html! {
-        a id=[id] class=[(!class.is_empty()).then_some(class)] href=(href)
-            title=[(!title.is_empty()).then_some(title)] {}
-    })
+fn opened(class: &str, href: &str, id: Option<String>) -> Markup {
+    unclosed(&html! { a id=[id] class=[(!class.is_empty()).then_some(class)] href=(href) {} })
 }
 
 fn unclosed(link: &Markup) -> Markup {
@@ -445,9 +427,5 @@ fn with_punctuation(formula: &Markup, rest: &mut Events<'_>) -> Markup {
 }
 
 fn skip_to(rest: &mut Events<'_>, end: TagEnd) {
-    for (event, _) in rest.by_ref() {
-        if event == Event::End(end) {
-            break;
-        }
-    }
+    rest.by_ref().take_while(|(event, _)| *event != Event::End(end)).for_each(drop);
 }

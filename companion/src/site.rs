@@ -4,9 +4,8 @@ use crate::back_matter::{GLOSSARY, REFERENCES, Reference, Term};
 use crate::chapter::Chapter;
 use crate::highlight::Highlighter;
 use crate::letters::{self, Letters};
-use crate::library::{Entry, Fault, Library};
+use crate::library::{Entry, Library};
 use crate::measured::Measured;
-use crate::uses::Uses;
 use anyhow::{Result, anyhow};
 use math_core::{LatexToMathML, MathCoreConfig};
 
@@ -45,27 +44,5 @@ impl Site {
             formulas: LatexToMathML::new(MathCoreConfig::default())
                 .map_err(|error| anyhow!("cannot convert formulas: {error:?}"))?,
         })
-    }
-
-    /// The number and entry of a reference.
-    pub fn reference(&self, key: &str) -> Option<(usize, &Entry<Reference>)> {
-        (1..).zip(&self.references).find(|(_, entry)| entry.key == key)
-    }
-
-    /// Finds unused entries and dead links: faults that show only once all texts are read.
-    pub fn check(&self, uses: &Uses, html: &str) -> Result<(), Fault> {
-        if let Some(Entry { key, line, .. }) =
-            self.terms.iter().find(|entry| !uses.terms.contains_key(&entry.key))
-        {
-            let message =
-                format!("no chapter links the term {key:?}; link it as [text](glossary:{key}), or remove it");
-            return Err(Fault::new(GLOSSARY, *line, message));
-        }
-        match uses.targets.iter().find(|(anchor, ..)| !html.contains(&format!(" id=\"{anchor}\""))) {
-            Some((anchor, file, line)) => {
-                Err(Fault::new(file, *line, format!("nothing on the page has the anchor #{anchor}")))
-            }
-            None => Ok(()),
-        }
     }
 }

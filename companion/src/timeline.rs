@@ -16,29 +16,19 @@ const LANES: u32 = 8;
 /// Samples per lane.
 const SAMPLES: u64 = 48;
 
-/// Height of a lane and width of the figure, in drawing units.
-const SIZE: [f64; 2] = [10.0, 720.0];
+/// The work of a lane in a step: its CSS class.
+type Activity = &'static str;
 
-/// Gap between lanes.
-const GAP: f64 = 1.5;
+const CAMERA: Activity = "from-camera";
+const WAITS: Activity = "waits";
 
-/// The work of a lane in a step.
-#[derive(Clone, Copy, PartialEq)]
-enum Activity {
-    Camera,
-    Matte,
-    Metal,
-    Glass,
-    Waits,
-}
-
-/// Meaning of the colours, with their CSS classes.
-const LEGEND: [(Activity, &str, &str); 5] = [
-    (Activity::Camera, "from-camera", "a ray from the camera"),
-    (Activity::Matte, "off-matte", "off a matte surface"),
-    (Activity::Metal, "off-metal", "off metal"),
-    (Activity::Glass, "off-glass", "off or through glass"),
-    (Activity::Waits, "waits", "waits"),
+/// Meaning of the colours.
+const LEGEND: [(Activity, &str); 5] = [
+    (CAMERA, "a ray from the camera"),
+    ("off-matte", "off a matte surface"),
+    ("off-metal", "off metal"),
+    ("off-glass", "off or through glass"),
+    (WAITS, "waits"),
 ];
 
 /// The steps of a packet: a row per lane, all equally long.
@@ -59,19 +49,21 @@ pub fn figure(id: &str, uses: &mut Uses) -> Result<Markup> {
     // Refill never takes longer.
     let columns = plain[0].len();
     let summary = |timeline: &Timeline| {
-        let places = timeline.len() * timeline[0].len();
-        let at_work = timeline.iter().flatten().filter(|activity| **activity != Activity::Waits).count();
-        let share = 100.0 * at_work as f64 / places as f64;
+        let at_work = timeline.iter().flatten().filter(|activity| **activity != WAITS).count();
+        let share = 100.0 * at_work as f64 / (timeline.len() * timeline[0].len()) as f64;
         format!("{} steps, {share:.0} % of the lanes at work", timeline[0].len())
     };
     Ok(html! {
         figure .timeline id={ "timeline-" (id) } {
-            p .label { "Without refill, all lanes wait for the longest path: " (summary(&plain)) }
-            (drawing(&plain, columns))
-            p .label { "With refill, a lane starts its next path at once: " (summary(&refilled)) }
-            (drawing(&refilled, columns))
+            @for (label, timeline) in [
+                ("Without refill, all lanes wait for the longest path: ", plain),
+                ("With refill, a lane starts its next path at once: ", refilled),
+            ] {
+                p .label { (label) (summary(&timeline)) }
+                (drawing(&timeline, columns))
+            }
             ul .legend aria-hidden="true" {
-                @for (_, class, meaning) in LEGEND { li { span .swatch .(class) {} (meaning) } }
+                @for (class, meaning) in LEGEND { li { span .swatch .(class) {} (meaning) } }
             }
             (numbered(&html! {
                 "The " (LANES) " lanes of a packet in the middle of the stage " code { (stage.id) } ", each with " (SAMPLES)
@@ -88,45 +80,40 @@ fn timeline(scene: &Scene, paths: &[Vec<PathRecord>], refill: bool) -> Timeline 
     let mut lanes: Timeline = vec![Vec::new(); paths.len()];
     for sample in 0..SAMPLES as usize {
         for (lane, paths) in lanes.iter_mut().zip(paths) {
-            lane.push(Activity::Camera);
+            lane.push(CAMERA);
             let rays = &paths[sample].rays;
             // The last ray's hit scatters no other.
             lane.extend(rays[..rays.len().saturating_sub(1)].iter().filter_map(|ray| ray.hit).map(|hit| {
                 match scene.material_of(&scene.spheres[hit.sphere]).look() {
-                    Look::Matte => Activity::Matte,
-                    Look::Mirror { .. } => Activity::Metal,
-                    Look::Glass { .. } => Activity::Glass,
+                    Look::Matte => "off-matte",
+                    Look::Mirror { .. } => "off-metal",
+                    Look::Glass { .. } => "off-glass",
                 }
             }));
         }
         if !refill || sample + 1 == SAMPLES as usize {
             let longest = lanes.iter().map(Vec::len).max().unwrap_or_default();
-            lanes.iter_mut().for_each(|lane| lane.resize(longest, Activity::Waits));
+            lanes.iter_mut().for_each(|lane| lane.resize(longest, WAITS));
         }
     }
     lanes
 }
 
-/// One timeline, `columns` steps wide.
+/// One timeline, `columns` steps wide: a step and a lane are units of the drawing, which the style stretches.
 fn drawing(timeline: &Timeline, columns: usize) -> Markup {
-    let [row, width] = SIZE;
-    let column = width / columns as f64;
-    let height = row * timeline.len() as f64;
     let path = |activity: Activity| {
         let mut path = String::new();
         for (lane, activities) in timeline.iter().enumerate() {
             for step in (0..activities.len()).filter(|step| activities[*step] == activity) {
-                let (x, y) = (step as f64 * column, lane as f64 * row);
-                let (across, down) = (column - GAP.min(0.25 * column), row - GAP);
                 // Writing to a string cannot fail.
-                let _ = write!(path, "M{x:.1} {y:.1}h{across:.1}v{down:.1}h-{across:.1}z");
+                let _ = write!(path, "M{step} {lane}h.8v.85h-.8z");
             }
         }
         path
     };
     html! {
-        svg viewBox={ "0 0 " (width) " " (height) } aria-hidden="true" {
-            @for (activity, class, _) in LEGEND { path class=(class) d=(path(activity)) {} }
+        svg viewBox={ "0 0 " (columns) " " (LANES) } preserveAspectRatio="none" aria-hidden="true" {
+            @for (class, _) in LEGEND { path class=(class) d=(path(class)) {} }
         }
     }
 }
@@ -145,6 +132,6 @@ mod tests {
         let (plain, refilled) = (steps("the longest path"), steps("its next path at once"));
         assert!(refilled >= 48.0 && refilled < 0.9 * plain, "{refilled} {plain}");
         // Every lane starts with a camera ray.
-        assert_eq!(html.matches("M0.0 ").count(), 16);
+        assert_eq!(html.matches("M0 ").count(), 16);
     }
 }

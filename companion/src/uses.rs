@@ -3,7 +3,7 @@
 use crate::picture::Picture;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The references that the texts have made so far.
+/// References that the texts have made so far.
 #[derive(Debug, Default)]
 pub struct Uses {
     /// Keys of linked terms, each with the short title of the first chapter that links it.
@@ -12,8 +12,19 @@ pub struct Uses {
     pub pictures: Vec<Picture>,
     /// How many figures have a number so far.
     pub numbered_figures: usize,
-    /// Anchors of headings and figures, which must be unique.
-    pub anchors: BTreeSet<String>,
-    /// Linked anchors, each with file and line.
-    pub targets: Vec<(String, String, usize)>,
+    /// Stages that are shown, each with an anchor at the first place.
+    pub stages: BTreeSet<&'static str>,
+    /// Code in the text of the section, with its lines.
+    pub names: Vec<(String, usize)>,
+    /// The words of the excerpts that are open in the section.
+    pub words: BTreeSet<String>,
+}
+
+impl Uses {
+    /// Adds a picture, once.
+    pub fn add(&mut self, picture: Picture) {
+        if self.pictures.iter().all(|other| other.file() != picture.file()) {
+            self.pictures.push(picture);
+        }
+    }
 }

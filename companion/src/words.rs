@@ -3,6 +3,11 @@
 use crate::uses::Uses;
 use maud::{Markup, html};
 
+/// Whether a letter can be part of a name in code.
+pub fn is_word(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
+}
+
 /// The caption of a figure with the next number.
 pub fn numbered(caption: &Markup, uses: &mut Uses) -> Markup {
     uses.numbered_figures += 1;

@@ -95,26 +95,24 @@ function start(figure, { size, narrow, state, hint = "", handles = [], choices =
 // The lanes that work at a step, from the drawings that the page holds.
 function startTimeline(figure) {
   const drawings = [...figure.querySelectorAll("svg")].map((svg) => {
-    const boxes = [...svg.querySelectorAll("path:not(.waits)")].flatMap((path) => [...path.getAttribute("d").matchAll(/M([\d.]+) ([\d.]+)h([\d.]+)/g)]);
-    const starts = boxes.map((box) => Number(box[1]));
+    // A step is a unit of the drawing.
+    const starts = [...svg.querySelectorAll("path:not(.waits)")].flatMap((path) => [...path.getAttribute("d").matchAll(/M(\d+) /g)].map((box) => Number(box[1])));
     const cursor = svg.appendChild(document.createElementNS(NS, "line"));
-    Object.entries({ class: "cursor", y1: -3, y2: 83 }).forEach(([key, value]) => cursor.setAttribute(key, value));
+    Object.entries({ class: "cursor", y1: -0.3, y2: 8.15 }).forEach(([key, value]) => cursor.setAttribute(key, value));
     return { starts, cursor };
   });
-  const all = [...new Set(drawings.flatMap(({ starts }) => starts))].sort((a, b) => a - b);
+  const steps = Math.max(...drawings.flatMap(({ starts }) => starts)) + 1;
   const controls = document.createElement("div"), reading = document.createElement("p"), state = { step: 8 };
   controls.className = "diagram-controls";
   reading.className = "reading";
   const show = () => {
-    const x = all[state.step - 1];
     const counts = drawings.map(({ starts, cursor }) => {
-      cursor.setAttribute("x1", x + 2);
-      cursor.setAttribute("x2", x + 2);
-      return starts.filter((start) => start === x).length;
+      for (const end of ["x1", "x2"]) cursor.setAttribute(end, state.step - 0.6);
+      return starts.filter((start) => start === state.step - 1).length;
     });
     reading.textContent = `Step ${state.step}: ${counts[0]} of 8 lanes work without refill, ${counts[1]} with it.`;
   };
-  controls.append(sliderRow(slider("step", "Step", 1, all.length, 1), state, show), reading);
+  controls.append(sliderRow(slider("step", "Step", 1, steps, 1), state, show), reading);
   figure.querySelector("figcaption").before(controls);
   show();
 }

@@ -10,7 +10,9 @@ use weekender::stages::Shading;
 pub(super) struct Slider {
     /// What it changes: a number of the camera, `bounces`, `samples`, or the material number `fuzz` or `index`.
     pub(super) key: &'static str,
-    pub(super) label: String,
+    /// The material that it changes, if a stage has several.
+    pub(super) name: String,
+    label: String,
     unit: &'static str,
     min: f64,
     max: f64,
@@ -25,11 +27,15 @@ pub(super) struct Slider {
 impl Slider {
     fn new(key: &'static str, label: &str, [min, max, step]: [f64; 3], value: f64) -> Self {
         let label = label.to_owned();
-        Slider { key, label, unit: "", min, max, step, value, rows: Vec::new(), inverse_rows: Vec::new() }
+        let unit = if ["vfov", "defocus"].contains(&key) { "°" } else { "" };
+        let (name, rows, inverse_rows) = Default::default();
+        Slider { key, name, label, unit, min, max, step, value, rows, inverse_rows }
     }
 
-    fn degrees(self) -> Self {
-        Slider { unit: "°", ..self }
+    /// Whether texts call it so: `fuzz` or, to tell one of several, `fuzz.left`.
+    pub(super) fn is_called(&self, wanted: &str) -> bool {
+        let rest = wanted.strip_prefix(self.key);
+        rest.is_some_and(|rest| rest.is_empty() || rest.strip_prefix('.') == Some(&self.name))
     }
 }
 
@@ -44,13 +50,13 @@ pub(super) fn sliders(job: &RenderJob, samples: u64, scene_index: &[u32]) -> Vec
     let mut sliders = Vec::new();
     if shading != Shading::ImageGradient {
         let camera = job.camera();
-        sliders.push(Slider::new("vfov", "Field of view", [5.0, 120.0, 1.0], camera.vfov_degrees).degrees());
+        sliders.push(Slider::new("vfov", "Field of view", [5.0, 120.0, 1.0], camera.vfov_degrees));
         // With one sample per pixel, a lens would only add noise.
         if samples > 1 {
             let focus = camera.effective_focus_distance();
             let angle = camera.defocus_angle_degrees;
             let range = [focus / 5.0, focus * 3.0, focus / 50.0];
-            sliders.push(Slider::new("defocus", "Defocus angle", [0.0, 20.0, 0.1], angle).degrees());
+            sliders.push(Slider::new("defocus", "Defocus angle", [0.0, 20.0, 0.1], angle));
             sliders.push(Slider::new("focus", "Focus distance", range, focus));
         }
     }
@@ -89,6 +95,7 @@ fn fuzz(job: &RenderJob, scene_index: &[u32]) -> Vec<Slider> {
         let named = &scene.materials[material];
         let label = format!("Fuzz ({})", named.name);
         Slider {
+            name: named.name.clone(),
             rows: rows_of(job, scene_index, |sphere| sphere.material == material),
             ..Slider::new("fuzz", &label, [0.0, 1.0, 0.01], named.material.effective_fuzz())
         }

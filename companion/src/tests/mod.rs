@@ -80,6 +80,10 @@ fn page_is_whole_small_and_rendered_once() {
         assert!(page.contains(&format!(" id=\"{id}\"")), "{id}");
     }
     assert!(!html::values(&page, "data-set").is_empty());
+    // Every term is linked by a chapter.
+    for term in html::values(&page, "id").into_iter().filter_map(|id| id.strip_prefix("term-")) {
+        assert!(page.contains(&format!(" id=\"use-{term}\"")), "{term}");
+    }
     let count = |part: &str| page.matches(part).count();
     assert!(count("<figure class=\"code") > 60 && count("<math") > 30 && count("data-stage=") > 25);
     let body = page.split("<main").nth(1).unwrap().split("<script").next().unwrap();
