@@ -3,6 +3,7 @@
 use super::theme;
 use super::widgets::{About, FIELD, above, named, row, show_tip, tip};
 use crate::measure::grouped;
+use crate::numbers::rounded;
 use eframe::egui::{
     DragValue, Key, Response, Slider, SliderClamping, Stroke, StrokeKind, Ui, response::Flags,
 };
@@ -227,13 +228,6 @@ pub fn compact(n: f64) -> String {
 
 fn with_minus(text: &str) -> String {
     text.replace('-', "\u{2212}")
-}
-
-/// A number rounded to `digits` digits of `scale`.
-pub fn rounded(n: f64, scale: f64, digits: i32) -> f64 {
-    let step = 10_f64.powi(scale.log10().floor().clamp(-300.0, 300.0) as i32 + 1 - digits);
-    let rounded = (n / step).round() * step;
-    if rounded.is_finite() { rounded } else { n }
 }
 
 /// A number of samples, in words.

@@ -64,12 +64,6 @@ impl Window {
         self.display.check = None;
     }
 
-    pub(super) fn step_stage(&mut self, is_next: bool) {
-        if let Some(stage) = self.model.neighbour(is_next) {
-            self.show_origin(Origin::of_stage(stage));
-        }
-    }
-
     pub(super) fn compare_with(&mut self, partner: Partner) {
         if partner == Partner::Mine {
             self.visit_checked();
