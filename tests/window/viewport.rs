@@ -3,7 +3,7 @@
 use crate::harness::{choose_from_menu, drag, has_samples, open, send, until};
 use crate::objects::{on_screen, spheres};
 use crate::questions::Ask as _;
-use eframe::egui::{self, Key, Modifiers, PointerButton};
+use eframe::egui::{Key, Modifiers, PointerButton};
 use weekender::app::{Command, Show, Window};
 use weekender::stages::Stage;
 

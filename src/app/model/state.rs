@@ -55,12 +55,6 @@ impl Model {
         self.has_panels() && !self.remembered.hides_info && self.remembered.tab == tab
     }
 
-    /// Shows this tab of the right panel.
-    pub fn show_tab(&mut self, tab: Tab) {
-        self.hides_panels = false;
-        (self.remembered.tab, self.remembered.hides_info) = (tab, false);
-    }
-
     /// The backend for the chosen device.
     pub fn backend(&self) -> BackendChoice {
         self.backend_of(self.remembered.device)

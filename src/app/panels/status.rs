@@ -11,7 +11,7 @@ use crate::job::render::BackendInfo;
 use crate::measure::grouped;
 use crate::numbers::rounded;
 use crate::progressive::describe::{counted, seconds as time};
-use crate::progressive::{EndReason, Phase, Status};
+use crate::progressive::{EndReason, Phase};
 use eframe::egui::{
     self, Align, Button, Id, Label, Layout, Margin, PopupCloseBehavior, RectAlign, Response, RichText, Sides,
     Stroke, Ui, accesskit::Live,
@@ -257,6 +257,7 @@ mod tests {
     use super::*;
     use crate::app::tests::snapshot_of;
     use crate::film::ErrorEstimate;
+    use crate::progressive::Status;
     use std::sync::Arc;
     use std::time::Duration;
 

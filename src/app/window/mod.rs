@@ -24,7 +24,6 @@ use crate::job::recipe::Recipe;
 use anyhow::{Context as _, Result};
 use eframe::egui;
 use shell::Shell;
-use std::sync::Arc;
 use std::time::Duration;
 
 /// The window of the program.
@@ -132,6 +131,7 @@ impl Window {
     /// The state of the window now.
     pub fn snapshot(&self) -> Snapshot {
         let [undo, redo] = self.changes.labels(self.document());
+        let is_own = |at| !self.model.view.is_other(middle_of(at, self.document().size())[0]);
         Snapshot {
             status: self.tracing.main.status().clone(),
             other: self.tracing.other_status(&self.model),
@@ -144,11 +144,7 @@ impl Window {
             has_picture: self.tracing.main.has_picture(self.document()),
             is_moving: self.changes.is_in_gesture,
             is_held: self.tracing.main.is_held(),
-            has_pixel: self
-                .tools
-                .inspector
-                .hovered
-                .is_some_and(|at| !self.model.view.is_other(middle_of(at, self.document().size())[0])),
+            has_pixel: self.tools.inspector.hovered.is_some_and(is_own),
             has_paths: self.tools.paths.len() > 0,
             has_sight: self.display.sight.is_some(),
             invalid: self.tracing.invalid.clone(),
@@ -168,6 +164,7 @@ impl Window {
         self.perform_all(&context);
         self.layout(ui);
         self.perform_all(&context);
+        self.finish_document(&context);
         self.follow(&context);
         theme::paint_focus(&context);
         self.shell.had_focus = context.memory(|memory| memory.focused().is_some())
@@ -237,8 +234,8 @@ impl Window {
         }
     }
 
-    /// Starts what the changes of this frame ask for.
-    fn follow(&mut self, context: &egui::Context) {
+    /// The last changes of the document in this frame.
+    fn finish_document(&mut self, context: &egui::Context) {
         // The selection may be of another scene.
         let count = self.document().scene().spheres.len();
         self.model.selected = self.model.selected.filter(|sphere| *sphere < count);
@@ -246,24 +243,33 @@ impl Window {
             self.shell.toasts.good(error.to_string());
             self.model.document.camera = self.changes.last.camera;
         }
-        self.shell.toasts.follow(&self.model.document);
-        let (document, last) = (&self.model.document, &self.changes.last);
-        if document.stop != last.stop && Arc::ptr_eq(&document.origin, &last.origin) {
-            self.model.own_stop = Some(document.stop).filter(|stop| stop.samples.is_none());
-        }
         let room = self.display.viewport.room_pixels;
         // The dock opens when devices are compared, but their films stay.
         let needs_film = self.files.needs_film() || self.model.other_device().is_some();
         self.tracing.follow_size(context, &mut self.model, room, needs_film);
         self.follow_check();
-        let is_visit = self.display.check.as_ref().is_some_and(|[_, of]| *of == self.model.document);
-        if self.changes.follow(context, &self.model.document, is_visit) {
+        self.leave_useless_views();
+    }
+
+    /// Starts what the changes of this frame ask for.
+    fn follow(&mut self, context: &egui::Context) {
+        let changed = self.changes.look(&self.model);
+        self.shell.toasts.follow(&self.model.document);
+        if changed.picture {
+            self.shell.toasts.end_refusals();
+            self.tools.forget();
+        }
+        if changed.stop {
+            self.model.own_stop = Some(self.model.document.stop).filter(|stop| stop.samples.is_none());
+        }
+        if changed.film {
             self.model.view.end_look();
         }
+        let is_visit = self.display.check.as_ref().is_some_and(|[_, of]| *of == self.model.document);
+        self.changes.follow(context, &self.model.document, changed, is_visit);
         if self.changes.is_moving() {
             context.request_repaint_after(Duration::from_millis(40));
         }
-        self.leave_useless_views();
         let has_second = self.tracing.follow(context, &self.model, &self.changes);
         self.store.follow(context, &self.model, &self.changes, &mut self.tracing);
         let Window { model, tracing, display, tools, files, shell, .. } = self;
@@ -278,7 +284,7 @@ impl Window {
         if !has_second {
             model.view.end_comparison();
         }
-        display.kept.follow(context, model, tracing);
+        display.kept.follow(context, model, tracing, changed);
         if let Some((document, named)) = lost {
             let samples = document.stop.samples.unwrap_or(document.origin.recipe.samples_per_pixel);
             let backend = self.model.backend();

@@ -106,7 +106,9 @@ impl Window {
             C::Controls => self.toggle(|remembered| &mut remembered.hides_controls),
             C::Info => self.toggle(|remembered| &mut remembered.hides_info),
             C::Code => {
-                model.show_tab(if model.shows(Tab::Code) { Tab::Stage } else { Tab::Code });
+                let tab = if model.shows(Tab::Code) { Tab::Stage } else { Tab::Code };
+                (model.hides_panels, model.remembered.hides_info) = (false, false);
+                model.remembered.tab = tab;
             }
             C::Field(name) => {
                 (model.hides_panels, remembered.hides_controls) = (false, false);
@@ -202,8 +204,6 @@ impl Window {
     }
 
     pub(super) fn refuse(&mut self, name: &str, reason: &str) {
-        let mut letters = reason.chars();
-        let reason: String = letters.next().into_iter().flat_map(char::to_lowercase).chain(letters).collect();
         self.shell.toasts.good(format!("{}: {reason}", name.trim_end_matches('…')));
     }
 
@@ -254,7 +254,6 @@ impl Window {
         let is_other = !Arc::ptr_eq(&before.origin, &self.document().origin);
         if is_other {
             self.leave_picture();
-            self.tools.forget();
         }
         if is_other || before.scene().spheres.len() != self.document().scene().spheres.len() {
             self.model.selected = None;

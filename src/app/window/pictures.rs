@@ -43,7 +43,6 @@ impl Window {
         let was_with_stage = is_with_stage(&self.model);
         if !Arc::ptr_eq(&document.origin, &self.document().origin) {
             self.leave_picture();
-            self.shell.toasts.end_refusals();
         }
         self.model.document = document;
         // The next stage has a partner of its own; what has none is not compared with something of another kind.
@@ -54,7 +53,6 @@ impl Window {
         if self.model.remembered.tab == Tab::Check {
             self.model.remembered.tab = Tab::Stage;
         }
-        self.tools.forget();
     }
 
     /// Leaves what belongs to the picture that was shown.
