@@ -82,7 +82,7 @@ fn f6_goes_from_panel_to_panel() {
         node.and_then(|node| node.label())
     };
     let names = [(); 6].map(|()| focused().unwrap_or_default());
-    let expected = ["File", "Field of view", "Compare with", "Error", "Close this message", "File"];
+    let expected = ["File", "Camera, open", "Compare with", "Error", "Close this message", "File"];
     assert_eq!(names, expected);
 }
 

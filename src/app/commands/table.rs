@@ -218,7 +218,7 @@ table! {
     GoOnFromKept "Continue the kept picture", "Traces the kept picture that is compared with, and adds samples",
         needs(|f| f.model.view.kept_partner().is_some_and(|kept| kept.document.is_some()), NOTHING_KEPT);
     DeleteKept "Delete the kept picture", "Frees the memory of the kept picture that is compared with",
-        needs(has_kept, NOTHING_KEPT);
+        needs(|f| f.model.view.kept_partner().is_some(), NOTHING_KEPT);
 
     [Some("Stage")]
     Stages "All stages…", "Every picture of the book, and extreme scenes such as dust and soap bubbles",
@@ -349,10 +349,6 @@ fn has_selection(snapshot: &Snapshot) -> bool {
 
 fn has_spheres(snapshot: &Snapshot) -> bool {
     !snapshot.document().scene().spheres.is_empty()
-}
-
-fn has_kept(snapshot: &Snapshot) -> bool {
-    snapshot.model.view.kept_partner().is_some()
 }
 
 fn no_presentation(snapshot: &Snapshot) -> Option<String> {

@@ -185,14 +185,9 @@ pub fn vector(ui: &mut Ui, about: About<'_>, value: &mut DVec3, limits: RangeInc
     });
 }
 
-/// The bytes of a colour as the picture shows it in white light.
-pub fn shown_albedo(albedo: DVec3) -> [u8; 3] {
-    albedo.to_array().map(|n| (255.0 * n.clamp(0.0, 1.0).sqrt()).round() as u8)
-}
-
-/// A colour to pick.
+/// A colour to pick, as the picture shows it in white light.
 pub fn colour(ui: &mut Ui, about: About<'_>, albedo: &mut DVec3) {
-    let shown = shown_albedo(*albedo);
+    let shown = albedo.to_array().map(|n| (255.0 * n.clamp(0.0, 1.0).sqrt()).round() as u8);
     row(ui, about, |ui| {
         ui.spacing_mut().interact_size.x = FIELD;
         let mut picked = shown;

@@ -345,7 +345,7 @@ impl Window {
     fn focus_next_panel(&mut self, context: &Context) {
         let Remembered { tab, hides_controls, hides_info, dock, .. } = self.model.remembered;
         let is_narrow = context.content_rect().width() < NARROW;
-        let of_left = if self.document().no_rays().is_some() { "Render" } else { "Field of view" };
+        let of_left = if self.document().no_rays().is_some() { "Render" } else { "Camera" };
         let of_right = if tab == Tab::Stage { "Compare with" } else { tab.name() };
         let panels = [
             (MENUS[0], true),
