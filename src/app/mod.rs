@@ -17,7 +17,7 @@ mod tracing;
 mod viewport;
 mod window;
 
-pub use commands::{Command, MENUS, ROWS};
+pub use commands::{Command, ROWS};
 pub use eframe::egui::ThemePreference as Theme;
 pub use model::{Device, Dock, Document, Origin, Partner, Remembered, Show, Sizing, Source, Tab};
 pub use window::Window;
@@ -29,7 +29,7 @@ use crate::system::foreign::Captured;
 use crate::system::interrupt::Interrupt;
 use crate::system::journal;
 use anyhow::{Result, anyhow, bail};
-use eframe::egui::{self, Rect, Vec2, pos2, vec2};
+use eframe::egui::{self, Vec2, vec2};
 use std::ops::RangeInclusive;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::process::ExitCode;
@@ -82,7 +82,6 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
         let create = Box::new(move |context: &eframe::CreationContext<'_>| {
             drop(captured);
             journal::expect_panics(false);
-            bring_to_monitor(context);
             fit_to_monitor(context);
             let mut window = Window::with(options, context.storage)?;
             (window.shell.interrupt, window.shell.dialogs.system.is_there) = (Some(heeded), true);
@@ -128,23 +127,6 @@ fn check_libraries(message: &str) -> Result<()> {
     })
 }
 
-/// Moves the window to a monitor if it was last on one that is gone.
-fn bring_to_monitor(context: &eframe::CreationContext) {
-    let Some(window) = context.winit_window() else { return };
-    let rect = |x: i32, y: i32, width: u32, height: u32| {
-        Rect::from_min_size(pos2(x as f32, y as f32), vec2(width as f32, height as f32))
-    };
-    let (Ok(at), size) = (window.outer_position(), window.outer_size()) else { return };
-    let is_on_one = window.available_monitors().any(|monitor| {
-        let (corner, area) = (monitor.position(), monitor.size());
-        let area = rect(corner.x, corner.y, area.width, area.height);
-        is_in_sight(rect(at.x, at.y, size.width, size.height), area)
-    });
-    if let Some(monitor) = window.available_monitors().next().filter(|_| !is_on_one) {
-        window.set_outer_position(monitor.position());
-    }
-}
-
 /// Makes a window smaller that would not fit its monitor with its frame: the first one leaves room for a task bar, too.
 fn fit_to_monitor(context: &eframe::CreationContext) {
     let Some(window) = context.winit_window() else { return };
@@ -167,13 +149,6 @@ fn fitting_size(size: Vec2, monitor: Vec2, scale: f32, is_first: bool) -> Vec2 {
     const TASK_BAR: Vec2 = vec2(0.0, 48.0);
     let around = if is_first { FRAME + TASK_BAR } else { FRAME };
     size.min((monitor - scale * around).max(vec2(480.0, 320.0))).floor()
-}
-
-/// Whether enough of a window is on a monitor to find and move it.
-fn is_in_sight(window: Rect, monitor: Rect) -> bool {
-    /// Pixels in each direction.
-    const VISIBLE: f32 = 64.0;
-    monitor.intersect(window).size().min_elem() >= VISIBLE
 }
 
 /// The renderers to try for drawing the window, in order. Without a GPU a frame takes several times as long with wgpu
@@ -251,21 +226,6 @@ mod tests {
     /// A harness that draws a part of the window in the window's own dark style.
     pub(super) fn dressed<State>(size: [f32; 2]) -> HarnessBuilder<State> {
         Harness::<State>::builder().with_size(size).with_context_setup(toolkit::theme::install)
-    }
-
-    #[test]
-    fn windows_of_missing_monitors_are_moved() {
-        let rect = |x, y, width, height| Rect::from_min_size(pos2(x, y), vec2(width, height));
-        let monitor = rect(0.0, 0.0, 1920.0, 1080.0);
-        for (window, expected) in [
-            (rect(100.0, 100.0, 1280.0, 800.0), true),
-            (rect(-1000.0, 900.0, 1280.0, 800.0), true),
-            (rect(1900.0, 300.0, 1280.0, 800.0), false),
-            (rect(2400.0, 300.0, 1280.0, 800.0), false),
-            (rect(300.0, -800.0, 1280.0, 800.0), false),
-        ] {
-            assert_eq!(is_in_sight(window, monitor), expected, "{window:?}");
-        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The plan of a progressive render: what to render, and when to stop.
 
 use crate::job::render::SAMPLE_LIMIT;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use std::time::Duration;
 pub const NOISE_TARGET_FIRST_SAMPLES: u64 = 16;
 
 /// Stop conditions: the first one that is met ends the render. Without any, the render is endless.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stop {
     /// The samples that every pixel should hold.
     pub samples: Option<u64>,
@@ -22,7 +22,7 @@ pub struct Stop {
 }
 
 /// The picture whose error a noise target limits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NoiseOf {
     /// The film: see [`crate::film::Film::meets`].
     #[default]

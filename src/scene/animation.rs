@@ -10,6 +10,7 @@
 use super::camera::unit;
 use crate::scene::Camera;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Exclusive limit on frame numbers, and so on their count: an hour at 27 frames a second.
@@ -55,7 +56,7 @@ fn turned(start: &Camera, frame: u32, frames: u32) -> Camera {
     Camera { look_from, ..*start }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Keyframe {
     /// Below `FRAME_LIMIT`.
     pub frame: u32,

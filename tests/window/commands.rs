@@ -1,11 +1,10 @@
-//! Every command, by table, key and menu.
+//! Every command, by table and key.
 
-use crate::harness::{SMALL, control, open, send};
+use crate::harness::{SMALL, open, send};
 use crate::questions::Ask as _;
 use eframe::egui::Key;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use weekender::app::{Command, MENUS, ROWS, Window};
+use weekender::app::{Command, ROWS, Window};
 
 #[test]
 fn every_command_is_carried_out_or_says_why_not() {
@@ -40,20 +39,6 @@ fn every_key_reaches_its_command() {
         if harness.state().is_presenting() {
             send(&mut harness, Command::Present);
         }
-    }
-}
-
-#[test]
-fn every_menu_lists_its_commands() {
-    let mut harness = open(SMALL);
-    for menu in MENUS {
-        control(&harness, menu).click();
-        harness.run_steps(3);
-        for row in ROWS.iter().filter(|row| row.menu == Some(menu)) {
-            assert!(harness.query_all_by_label(row.name).next().is_some(), "{menu}: {}", row.name);
-        }
-        harness.key_press(Key::Escape);
-        harness.run_steps(3);
     }
 }
 

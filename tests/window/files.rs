@@ -1,4 +1,4 @@
-//! Saving, opening, dropping, and the companion.
+//! Saving, opening and dropping.
 
 use crate::harness::{SMALL, control, drop_file, has_samples, name_file, open, save, says, send, until};
 use crate::questions::Ask as _;
@@ -35,8 +35,7 @@ fn saved_files_open_again_and_keep_other_stages() {
     let shown = harness.state().shown_document().clone();
     for format in [OutputFormat::Png, OutputFormat::Exr] {
         let path = directory.path().join(format!("saved{}", format.ending()));
-        let command = if format == OutputFormat::Png { Command::Save } else { Command::SaveAs(format) };
-        save(&mut harness, command, &path);
+        save(&mut harness, Command::Save, &path);
         if format != OutputFormat::Exr {
             let pixels = image::open(&path).unwrap().to_rgb8().into_raw();
             assert!(pixels == rendered_again(&path), "{format:?} differs from a render of its recipe");
@@ -136,7 +135,7 @@ fn close(harness: &mut Harness<'_, Window>) -> Vec<egui::ViewportCommand> {
 }
 
 #[test]
-fn closing_asks_while_a_save_renders() {
+fn a_window_that_is_closed_ends_its_saves_first() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("large.png");
     let mut harness = open("--stage defocus --size 48x27 --samples 64 --device cpu");
@@ -152,8 +151,6 @@ fn closing_asks_while_a_save_renders() {
     harness.run_steps(2);
     assert!(!path.exists(), "it was ready before it could be asked about");
     assert!(close(&mut harness).contains(&egui::ViewportCommand::CancelClose));
-    harness.run_steps(2);
-    harness.get_by_label("Save, then close").click();
     let begin = std::time::Instant::now();
     loop {
         harness.step();
@@ -212,12 +209,4 @@ fn saving_at_another_size_renders_in_the_background() {
     assert_eq!([read.width(), read.height()], [96, 54]);
     assert_eq!(read_description(&path).unwrap().get("Samples"), Some("6"));
     assert_eq!(harness.state().status().run, run, "the picture on the screen continues");
-}
-
-#[test]
-fn a_missing_companion_names_its_command() {
-    let mut harness = open(SMALL);
-    send(&mut harness, Command::Companion);
-    harness.step();
-    assert!(says("cargo run --release -p companion")(harness.state()), "{:?}", harness.state().messages());
 }

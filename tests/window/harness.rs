@@ -136,7 +136,7 @@ pub fn name_file(harness: &mut Harness<'_, Window>, command: Command, path: &Pat
     harness.run_steps(2);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
     harness.step();
-    let is_saving = matches!(command, Command::Save | Command::SaveAs(_));
+    let is_saving = command == Command::Save;
     let field = if is_saving { "Name" } else { "File name" };
     control(harness, field).type_text(path.to_str().unwrap());
     harness.run_steps(2);

@@ -19,7 +19,6 @@ mod palette;
 mod panels;
 mod paths;
 mod pictures;
-mod plot;
 mod present;
 mod preview;
 mod questions;

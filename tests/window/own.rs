@@ -1,11 +1,10 @@
-//! One's own world: a new scene, and the list of spheres.
+//! One's own world: a new scene.
 
-use crate::harness::{control, has_samples, open, open_sized, save, send, until};
+use crate::harness::{control, has_samples, open, save, send, until};
 use crate::questions::Ask as _;
 use eframe::egui::{Key, Modifiers};
-use egui_kittest::Harness;
 use egui_kittest::kittest::NodeT;
-use weekender::app::{Command, Window};
+use weekender::app::Command;
 use weekender::job::recipe::file;
 
 #[test]
@@ -53,34 +52,4 @@ fn a_scene_that_was_saved_is_its_file() {
     let document = harness.state().shown_document();
     assert_eq!((document.heading(), document.is_changed()), ("mine.toml".to_owned(), true));
     assert_eq!(document.scene().spheres.len(), spheres);
-}
-
-/// The numbers of the rows of the list that are drawn, counted from 1.
-fn rows(harness: &Harness<'_, Window>) -> Vec<usize> {
-    let nodes = harness.root().children_recursive().filter_map(|node| node.accesskit_node().label());
-    nodes.filter_map(|label| label.strip_prefix("Sphere ")?.split_once(',')?.0.parse().ok()).collect()
-}
-
-#[test]
-fn all_spheres_are_listed_found_and_selected() {
-    let mut harness =
-        open_sized("--scene field:100000 --size 16x9 --samples 1 --device cpu", [1280.0, 800.0]);
-    harness.run_steps(2);
-    assert!(rows(&harness).is_empty());
-    send(&mut harness, Command::Field("Scene"));
-    harness.run_steps(20);
-    let first = rows(&harness);
-    assert!(first.len() < 20 && first.starts_with(&[1, 2, 3]), "{first:?}");
-    let name = harness
-        .root()
-        .children_recursive()
-        .find_map(|node| node.accesskit_node().label().filter(|label| label.starts_with("Sphere 3,")));
-    control(&harness, &name.unwrap()).click();
-    harness.run_steps(3);
-    assert_eq!(harness.state().selected(), Some(2));
-    // What is selected elsewhere comes into sight.
-    send(&mut harness, Command::Sphere(70_000));
-    harness.run_steps(3);
-    let shown = rows(&harness);
-    assert!(shown.len() < 20 && shown.contains(&70_001), "{shown:?}");
 }

@@ -4,7 +4,7 @@ use crate::harness::{SMALL, control, open};
 use crate::questions::Ask as _;
 use eframe::egui::{Event, Key, Modifiers};
 use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Theme, Window};
 
 fn enter(harness: &mut Harness<'_, Window>, text: &str, downs: usize) {
@@ -33,19 +33,6 @@ fn typed_commands_are_carried_out() {
     assert_eq!(harness.state().performed(), Some(Command::Theme(Theme::Dark)));
     enter(&mut harness, "11.2 ", 0);
     assert_eq!(harness.state().shown_document().stage().unwrap().id, "glass-refract");
-}
-
-#[test]
-fn another_word_leads_to_a_field() {
-    let mut harness = open("--stage book --size 32x18");
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
-    harness.run_steps(3);
-    harness.get_by_label("Command").type_text("bokeh");
-    harness.run_steps(3);
-    harness.key_press(Key::Enter);
-    harness.run_steps(5);
-    let mut fields = harness.get_all_by_label("Defocus angle");
-    assert!(fields.any(|node| node.accesskit_node().is_focused()), "the field has the focus");
 }
 
 #[test]

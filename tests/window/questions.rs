@@ -8,6 +8,12 @@ use weekender::progressive::Status;
 /// The pixel that is read, its bytes, whether it is the other picture's, and the means of both if they are compared.
 pub type Read = ([u32; 2], [u8; 3], bool, Option<[[f64; 3]; 2]>);
 
+fn colour(image: &egui::ColorImage, at: [u32; 2]) -> Option<[u8; 3]> {
+    let [x, y] = at.map(|along| along as usize);
+    let is_inside = x < image.width() && y < image.height();
+    is_inside.then(|| [0, 1, 2].map(|channel| image[(x, y)].to_array()[channel]))
+}
+
 pub trait Ask {
     fn window(&self) -> &Window;
 
@@ -45,7 +51,7 @@ pub trait Ask {
 
     /// A pixel as it is on the screen.
     fn shown_pixel(&self, at: [u32; 2]) -> Option<[u8; 3]> {
-        self.window().tracing.main.shown().and_then(|shown| shown.texture.colour(at))
+        self.window().tracing.main.shown().and_then(|shown| colour(&shown.texture.image, at))
     }
 
     /// The picture on the screen shows the document.
@@ -108,7 +114,7 @@ pub trait Ask {
     /// A pixel of the picture that the traced one is compared with.
     fn other_pixel(&self, at: [u32; 2]) -> Option<[u8; 3]> {
         let other = self.window().tracing.other(&self.window().model)?;
-        self.window().tracing.second.texture(&other)?.0.colour(at)
+        colour(&self.window().tracing.second.texture(&other)?.0.image, at)
     }
 
     fn divider(&self) -> f32 {
@@ -131,13 +137,14 @@ pub trait Ask {
 
     /// The pixel that the panel describes, and its linear radiance.
     fn inspected(&self) -> Option<([u32; 2], [f64; 3])> {
-        self.window().tools.inspector.readout().map(|readout| (readout.pixel.at, readout.pixel.mean))
+        let readout = self.window().tools.inspector.readout(&self.window().model);
+        readout.map(|readout| (readout.pixel.at, readout.pixel.mean))
     }
 
     /// The pixel that the panel describes, its bytes, whether it is one of the other picture, and the radiance of the other
     /// picture and of this one, if they are compared.
     fn readout(&self) -> Option<Read> {
-        let readout = self.window().tools.inspector.readout()?;
+        let readout = self.window().tools.inspector.readout(&self.window().model)?;
         let compared = readout.compared.as_ref().map(|[theirs, mine]| [theirs.mean, mine.mean]);
         Some((readout.pixel.at, readout.pixel.bytes, readout.is_other, compared))
     }

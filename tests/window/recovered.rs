@@ -357,7 +357,7 @@ fn settings_of_the_same_version_are_remembered() {
     send(&mut harness, Command::Show(Show::Luminance));
     let kept = harness.state_mut().remembered_mut().clone();
     harness.state_mut().save(&mut stored);
-    assert_eq!((kept.theme, kept.dock, kept.has_info), (Theme::Light, Some(Dock::Error), false));
+    assert_eq!((kept.theme, kept.dock, kept.hides_info), (Theme::Light, Some(Dock::Error), true));
     assert_eq!(kept.device, Device::Reference);
     assert_eq!(remembering("--device cpu", &stored).state().show(), Show::Luminance);
     let mut again = remembering("--stage metal", &stored);

@@ -1,28 +1,27 @@
 //! Films that the window resumes.
 
-use crate::harness::{drop_file, has_samples, open, save, send, until};
+use crate::harness::{has_samples, open, save, send, until};
 use crate::questions::Ask as _;
 use crate::recovered::held;
 use std::path::Path;
 use weekender::app::{Command, Window};
 use weekender::film::checkpoint;
-use weekender::job::output::OutputFormat;
 use weekender::progressive::Stop;
 
 const PICTURE: &str = "--stage defocus --size 48x27 --vfov 31 --device cpu";
 
 /// Saves a film of [`PICTURE`] with forty samples.
-fn save_film(path: &Path, more: &str) {
-    let mut harness = open(&format!("{PICTURE} {more} --samples 40"));
+fn save_film(path: &Path) {
+    let mut harness = open(&format!("{PICTURE} --samples 40"));
     until(&mut harness, "the end", has_samples(40));
-    save(&mut harness, Command::SaveAs(OutputFormat::Exr), path);
+    save(&mut harness, Command::Save, path);
 }
 
 #[test]
 fn resumed_film_follows_the_flags() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("film.exr");
-    save_film(&path, "");
+    save_film(&path);
     let resume = format!("--resume {} --device cpu", path.display());
     for (flags, stop) in [
         ("--samples 90 --time-limit 1000", Stop { seconds: Some(1000.0), ..Stop::at_samples(90) }),
@@ -44,10 +43,10 @@ fn resumed_film_follows_the_flags() {
         // Its samples are those of an uninterrupted render.
         let saved = tempfile::tempdir().unwrap();
         let [resumed, whole] = ["resumed.exr", "whole.exr"].map(|name| saved.path().join(name));
-        save(&mut harness, Command::SaveAs(OutputFormat::Exr), &resumed);
+        save(&mut harness, Command::Save, &resumed);
         let mut harness = open(&format!("{PICTURE} --samples 90"));
         until(&mut harness, "the end", has_samples(90));
-        save(&mut harness, Command::SaveAs(OutputFormat::Exr), &whole);
+        save(&mut harness, Command::Save, &whole);
         let [resumed, whole] = [resumed, whole].map(|path| checkpoint::load(&path).unwrap().film);
         assert!(resumed == whole, "{flags}");
     }
@@ -88,21 +87,4 @@ fn a_long_render_left_while_it_traces_keeps_its_samples() {
     send(&mut harness, Command::Undo);
     until(&mut harness, "its samples", |window| held(window) > 0);
     assert_eq!(harness.state().shown_document().stage().unwrap().id, "metal");
-}
-
-/// A film that is opened takes its place.
-#[test]
-fn a_long_render_is_there_again_after_a_film_was_opened() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("film.exr");
-    save_film(&path, "");
-    let mut harness = open("--stage metal --size 32x18 --samples 8 --device cpu");
-    until(&mut harness, "the end", |window| has_samples(8)(window) && window.status().phase.is_over());
-    harness.state_mut().tracing.main.seconds_before = Some(60.0);
-    drop_file(&mut harness, &path);
-    until(&mut harness, "the film", |window| held(window) == 40);
-    send(&mut harness, Command::Undo);
-    until(&mut harness, "its samples", |window| held(window) == 8);
-    assert_eq!(harness.state().shown_document().stage().unwrap().id, "metal");
-    assert!(harness.state().status().contributions.is_empty(), "nothing was traced again");
 }

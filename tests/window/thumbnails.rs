@@ -50,5 +50,5 @@ fn a_stage_is_chosen_with_arrows_or_by_typing() {
     assert!(rows(&harness) > 8, "the first Escape forgets what was typed");
     press(&mut harness, &[Key::Escape]);
     assert_eq!((shown(&harness), rows(&harness)), ("glass-refract", 0));
-    assert!(harness.state_mut().remembered_mut().has_controls && !harness.state().is_comparing());
+    assert!(!harness.state_mut().remembered_mut().hides_controls && !harness.state().is_comparing());
 }

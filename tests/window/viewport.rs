@@ -1,9 +1,9 @@
 //! The mouse on the picture, and what the picture shows.
 
-use crate::harness::{SMALL, choose_from_menu, drag, has_samples, open, send, until};
+use crate::harness::{choose_from_menu, drag, has_samples, open, send, until};
 use crate::objects::{on_screen, spheres};
 use crate::questions::Ask as _;
-use eframe::egui::{self, Key, Modifiers, PointerButton, vec2};
+use eframe::egui::{Key, Modifiers, PointerButton};
 use weekender::app::{Command, Show, Window};
 use weekender::stages::Stage;
 
@@ -28,35 +28,6 @@ fn drags_move_the_camera_or_the_picture() {
     assert_eq!(camera(&harness), still, "the picture moves, not the camera");
 }
 
-/// Turns the wheel with Ctrl at this point.
-fn zoom(harness: &mut egui_kittest::Harness<'_, Window>, at: egui::Pos2, lines: f32) {
-    harness.event(egui::Event::PointerMoved(at));
-    harness.step();
-    harness.event_modifiers(
-        egui::Event::MouseWheel {
-            unit: egui::MouseWheelUnit::Line,
-            delta: vec2(0.0, lines),
-            phase: egui::TouchPhase::Move,
-            source: egui::MouseWheelSource::Wheel,
-            modifiers: Modifiers::COMMAND,
-        },
-        Modifiers::COMMAND,
-    );
-    harness.run_steps(20);
-}
-
-#[test]
-fn the_wheel_zooms_at_the_pointer() {
-    let mut harness = open("--stage view-distant --size 64x36 --samples 1");
-    until(&mut harness, "a picture", has_samples(1));
-    let fitted = harness.state().picture_rect();
-    let at = fitted.lerp_inside(vec2(0.2, 0.5));
-    zoom(&mut harness, at, 4.0);
-    let zoomed = harness.state().picture_rect();
-    assert!(zoomed.width() > 1.05 * fitted.width(), "{zoomed:?}");
-    assert!(((at.x - zoomed.left()) / zoomed.width() - 0.2).abs() < 0.02, "{zoomed:?}");
-}
-
 #[test]
 fn views_are_shown_and_follow_the_camera() {
     let mut harness = open("--stage defocus --size 64x36");
@@ -74,21 +45,6 @@ fn views_are_shown_and_follow_the_camera() {
     harness.run_steps(2);
     assert_eq!(harness.state().show(), Show::Picture);
     assert!(!harness.state().messages().is_empty());
-}
-
-#[test]
-fn escape_leaves_a_comparison_and_a_view() {
-    let mut harness = open(SMALL);
-    until(&mut harness, "a picture", has_samples(1));
-    for command in [Command::Difference, Command::Wipe, Command::Show(Show::Error)] {
-        send(&mut harness, command);
-        harness.run_steps(5);
-        let is_other = |window: &Window| window.is_comparing() || window.show() != Show::Picture;
-        assert!(is_other(harness.state()), "{command:?}");
-        harness.key_press(Key::Escape);
-        harness.run_steps(3);
-        assert!(!is_other(harness.state()), "{command:?}");
-    }
 }
 
 #[test]

@@ -1,8 +1,7 @@
 //! All commands of menus, keys, buttons and the palette: one table, with one row per command.
 
 use super::snapshot::Snapshot;
-use crate::app::model::{Device, Dock, Mode, Partner, Show, Tab, ViewState};
-use crate::job::output::OutputFormat;
+use crate::app::model::{Device, Dock, Edit, Mode, Partner, Show, Tab, ViewState};
 use crate::measure::stress::Case;
 use crate::stages::Stage;
 use eframe::egui::{Context, Key, KeyboardShortcut, ModifierNames, Modifiers, ThemePreference};
@@ -131,8 +130,6 @@ macro_rules! table {
 #[rustfmt::skip]
 table! {
     families {
-        /// Opens the dialog of `Save` with this format.
-        SaveAs(OutputFormat),
         Show(Show),
         Theme(ThemePreference),
         Device(Device),
@@ -141,8 +138,8 @@ table! {
         /// Opens a recent file.
         Recent(usize),
         Bookmark(usize),
-        /// Selects a sphere.
-        Sphere(usize),
+        /// Changes the scene. It joins a move in progress.
+        Edit(Edit),
         CompareWith(Partner),
         /// Goes to the field of this name in the left panel.
         Field(&'static str),
@@ -186,13 +183,13 @@ table! {
     ActualSize "Actual size", "One pixel of the picture per pixel of the screen", key(Key::Num1),
         also("100 % zoom");
     Controls "Controls", "Shows or hides camera, lens and sphere at the left", key(Key::L), line(),
-        off(no_presentation), on(|f| f.model.remembered.has_controls), also("left panel camera lens");
+        off(no_presentation), on(|f| !f.model.remembered.hides_controls), also("left panel camera lens");
     Info "Stage and pixel", "Shows or hides the text and the numbers at the right", key(Key::I),
-        off(no_presentation), on(|f| f.model.remembered.has_info), also("right panel text");
+        off(no_presentation), on(|f| !f.model.remembered.hides_info), also("right panel text");
     ErrorDock "Error over time", "Opens the dock with the error over time", key(Key::P), off(no_presentation),
         on(|f| f.model.remembered.dock == Some(Dock::Error)), also("plot convergence noise quality");
     Panels "Only the picture", "Hides all panels; again shows them", key(Key::Tab),
-        on(|f| !f.model.remembered.has_panels), also("hide panels");
+        on(|f| f.model.hides_panels), also("hide panels");
     Present "Present", "Full screen with large captions, for a lecture; Escape ends it", key(Key::F5), line(),
         on(|f| f.model.presentation.is_some()), also("lecture slides projector beamer");
     FullScreen "Full screen", "Fills the screen with the window", key(Key::F11), on(|f| f.model.is_full_screen);
@@ -221,7 +218,7 @@ table! {
     GoOnFromKept "Continue the kept picture", "Traces the kept picture that is compared with, and adds samples",
         needs(|f| f.model.view.kept_partner().is_some_and(|kept| kept.document.is_some()), NOTHING_KEPT);
     DeleteKept "Delete the kept picture", "Frees the memory of the kept picture that is compared with",
-        needs(has_kept, NOTHING_KEPT);
+        needs(|f| f.model.view.kept_partner().is_some(), NOTHING_KEPT);
 
     [Some("Stage")]
     Stages "All stages…", "Every picture of the book, and extreme scenes such as dust and soap bubbles",
@@ -325,17 +322,13 @@ fn family_rows() -> Vec<Row> {
         let row = Row::new(Some("Theme"), Command::Theme(theme), [name, help]);
         rows.push(row.on(move |f| f.model.remembered.theme == theme).also(synonyms));
     }
-    for device in [Device::Cpu, Device::Gpu] {
-        let row = Row::new(None, Command::Device(device), [device.label(), device.help()]);
+    for (device, help) in [
+        (Device::Cpu, "Trace on the processor"),
+        (Device::Gpu, "Trace on the graphics card, usually many times faster"),
+    ] {
+        let row = Row::new(None, Command::Device(device), [device.label(), help]);
         let row = row.off(move |_| device.unavailable()).also("device trace");
         rows.push(row.on(move |f| f.model.remembered.device == device));
-    }
-    for (format, name, modifiers, key) in [
-        (OutputFormat::P6, "Save as PPM…", CTRL_SHIFT, Key::S),
-        (OutputFormat::Exr, "Save film…", CTRL, Key::E),
-    ] {
-        let row = Row::new(None, Command::SaveAs(format), [name, ""]);
-        rows.push(row.keys(modifiers, key).needs(is_live, KEPT_IS_SHOWN).unlisted());
     }
     rows
 }
@@ -358,10 +351,6 @@ fn has_spheres(snapshot: &Snapshot) -> bool {
     !snapshot.document().scene().spheres.is_empty()
 }
 
-fn has_kept(snapshot: &Snapshot) -> bool {
-    snapshot.model.view.kept_partner().is_some()
-}
-
 fn no_presentation(snapshot: &Snapshot) -> Option<String> {
     snapshot.model.presentation.map(|_| "A presentation has no panels; Escape ends it".to_owned())
 }
@@ -379,7 +368,6 @@ impl Command {
             Command::Extreme(case) => case.title().to_owned(),
             Command::Recent(place) => format!("Recent file {}", place + 1),
             Command::Bookmark(place) => format!("Bookmark {}", place + 1),
-            Command::Sphere(place) => format!("Sphere {}", place + 1),
             Command::Field(name) => name.to_owned(),
             _ => self.row().map_or_else(String::new, |row| row.name.to_owned()),
         }

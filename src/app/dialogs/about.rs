@@ -3,7 +3,7 @@
 use super::outcome::Outcome;
 use crate::app::commands::Snapshot;
 use crate::app::model::adapter;
-use crate::app::toolkit::widgets::{Header, fold, hint, tip};
+use crate::app::toolkit::widgets::{fold, hint, tip};
 use crate::system::journal::kept_text;
 use eframe::egui::{RichText, ScrollArea, Ui};
 
@@ -20,7 +20,7 @@ pub(super) fn ui(ui: &mut Ui, snapshot: &Snapshot) -> Outcome {
         "The path tracer of Ray Tracing in One Weekend by Peter Shirley, Trevor David Black and Steve Hollasch, as a \
          viewer",
     );
-    fold(ui, Header { title: "Licences", ..Header::default() }, false, |ui| {
+    fold(ui, ["Licences", ""], false, |ui| {
         ScrollArea::vertical().max_height(200.0).show(ui, |ui| ui.label(RichText::new(LICENCES).small()));
     });
     let mut is_closed = false;

@@ -3,7 +3,6 @@
 mod about;
 mod files;
 mod help;
-mod leave;
 mod outcome;
 mod palette;
 pub mod stage_list;
@@ -29,8 +28,6 @@ pub enum Dialog {
     Save(SaveBox),
     /// The entry of a path.
     Path(PathField),
-    /// The window is to be closed, but a picture for a file of this name is still rendered.
-    Leave(String),
 }
 
 /// The open dialog, and the system's file dialog.
@@ -49,11 +46,6 @@ impl Dialogs {
     /// Opens a dialog. It replaces an open one.
     pub fn open(&mut self, dialog: Dialog) {
         self.open = Some(dialog);
-    }
-
-    /// Closes the question before the window closes. Returns whether it was open.
-    pub fn end_leave(&mut self) -> bool {
-        self.open.take_if(|dialog| matches!(dialog, Dialog::Leave(_))).is_some()
     }
 
     /// Draws the dialog. Returns how it closes.
@@ -81,7 +73,6 @@ impl Dialogs {
                 Dialog::About => about::ui(ui, cx),
                 Dialog::Save(save) => save.ui(ui, cx, &mut self.system),
                 Dialog::Path(field) => field.ui(ui),
-                Dialog::Leave(name) => leave::ui(name, ui),
             }
         });
         if modal.should_close() || !matches!(modal.inner, Outcome::Stay) {

@@ -11,10 +11,6 @@ pub enum Outcome {
     Named(Purpose, PathBuf),
     /// It closes: this is saved.
     Save(Wanted),
-    /// It closes, and so does the window, at once or when everything is saved.
-    Leave {
-        saves: bool,
-    },
 }
 
 /// The choices of the dialog of saving.

@@ -2,23 +2,22 @@
 
 use super::outcome::Outcome;
 use crate::app::commands::{Command, PanelContext, ROWS, Snapshot};
-use crate::app::toolkit::menu::{line, name_state};
+use crate::app::toolkit::menu::entry;
 use crate::app::toolkit::widgets::{caption, hint};
 use crate::app::toolkit::{Finder, rank};
 use crate::measure::stress::shown_cases;
 use crate::stages::Stage;
-use eframe::egui::{Response, RichText, Ui, vec2};
+use eframe::egui::{Ui, vec2};
 
 /// Suggestions for an empty box.
 const USUAL: [Command; 5] =
     [Command::ShowMe, Command::Save, Command::Present, Command::Stages, Command::Help];
 
 /// Fields of the left panel that are found by other words, too.
-const FIELDS: [(&str, &str); 5] = [
-    ("Scene", "all spheres list select objects outliner sky colours background light gradient"),
+const FIELDS: [(&str, &str); 4] = [
+    ("Sky", "scene colours background light gradient"),
     ("Field of view", "fov angle zoom lens"),
-    ("Defocus angle", "blur defocus depth of field dof aperture bokeh"),
-    ("Focus distance", "focus sharp"),
+    ("Lens", "defocus angle focus distance blur sharp depth of field dof aperture bokeh"),
     ("Render", "size samples noise grain quality spp resolution pixels stop sampler seed depth"),
 ];
 
@@ -78,7 +77,7 @@ pub(super) fn ui(finder: &mut Finder, ui: &mut Ui, height: f32, cx: &PanelContex
         if *is_place && !std::mem::replace(&mut was_place, true) {
             caption(ui, "Stages, scenes, files and bookmarks");
         }
-        let response = row(ui, cx, *command, name, is_chosen);
+        let response = entry(ui, cx, *command, name, is_chosen);
         if response.hovered() {
             hovered = Some(*command);
         }
@@ -93,16 +92,6 @@ pub(super) fn ui(finder: &mut Finder, ui: &mut Ui, height: f32, cx: &PanelContex
         }
         None => Outcome::Stay,
     }
-}
-
-/// A command, whether it is on, and its keys.
-fn row(ui: &mut Ui, snapshot: &Snapshot, command: Command, name: &str, is_chosen: bool) -> Response {
-    let is_enabled = snapshot.disabled_reason(command).is_none();
-    let [gap, state] = if snapshot.is_on(command) { ["  ", "on"] } else { ["", ""] };
-    let line = line(ui, command, (name, gap, RichText::new(state).strong()), is_chosen);
-    let response = ui.add_enabled(is_enabled, line).accessible_name(name);
-    name_state(&response, snapshot.switch(command));
-    response
 }
 
 /// The help of a command, or why it is disabled. It has two lines, so that nothing moves.
@@ -133,14 +122,13 @@ mod tests {
             ("png", Command::Save),
             ("save as", Command::Save),
             ("new", Command::NewScene),
-            ("sky colours", Command::Field("Scene")),
-            ("list spheres", Command::Field("Scene")),
+            ("sky colours", Command::Field("Sky")),
             ("animation", Command::SaveAnimation),
             ("video", Command::SaveAnimation),
             ("turntable", Command::SaveAnimation),
             ("speed", Command::CompareDevices),
-            ("blur", Command::Field("Defocus angle")),
-            ("dof", Command::Field("Defocus angle")),
+            ("blur", Command::Field("Lens")),
+            ("dof", Command::Field("Lens")),
             ("fov", Command::Field("Field of view")),
             ("beamer", Command::Present),
             ("homework", Command::CheckPicture),

@@ -38,10 +38,8 @@ struct Step {
     camera: Camera,
     settings: RenderSettings,
     has_own_size: bool,
-    #[serde(default)]
-    bookmarks: Vec<(u32, Camera)>,
-    /// Samples, seconds, error.
-    stop: (Option<u64>, Option<f64>, Option<f64>),
+    keyframes: Vec<Keyframe>,
+    stop: Stop,
 }
 
 /// Documents that follow each other, oldest first. Scenes that they share are written once.
@@ -56,8 +54,7 @@ pub fn to_text(documents: &[Document]) -> String {
         })
     };
     for document in documents {
-        let Document { origin, checked, camera, settings, has_own_size, .. } = document.clone();
-        let Stop { samples, seconds, noise, .. } = document.stop;
+        let Document { origin, checked, camera, keyframes, settings, has_own_size, stop } = document.clone();
         let from = match &origin.source {
             Source::Stage(stage) => From::Stage(stage.id.to_owned()),
             Source::File(path) => From::File(path.clone()),
@@ -65,9 +62,7 @@ pub fn to_text(documents: &[Document]) -> String {
         };
         let scene = document.has_changed_scene();
         let scene = scene.then(|| place(Arc::as_ptr(&checked).addr(), &|| document.recipe()));
-        let stop = (samples, seconds, noise);
-        let bookmarks = document.keyframes.iter().map(|keyframe| (keyframe.frame, keyframe.camera)).collect();
-        edits.steps.push(Step { origin: from, scene, camera, settings, has_own_size, bookmarks, stop });
+        edits.steps.push(Step { origin: from, scene, camera, settings, has_own_size, keyframes, stop });
     }
     serde_json::to_string(&edits).unwrap_or_default()
 }
@@ -94,19 +89,14 @@ pub fn read(path: &Path) -> Vec<Document> {
         let like = like.filter(|(other, _)| other.scene == step.scene);
         let own = || Some(CheckedScene::new(recipe(step.scene?)?.scene, origin.recipe.rules));
         let checked = like.map(|(_, like)| Arc::clone(&like.checked)).or_else(|| own().map(Arc::new));
-        let (samples, seconds, noise) = step.stop;
         let document = Document {
             checked: checked.unwrap_or_else(|| Arc::clone(&origin.scene)),
             origin,
             camera: step.camera,
-            keyframes: step
-                .bookmarks
-                .iter()
-                .map(|(frame, camera)| Keyframe { frame: *frame, camera: *camera })
-                .collect(),
+            keyframes: step.keyframes.clone(),
             settings: step.settings,
             has_own_size: step.has_own_size,
-            stop: Stop { samples, seconds, noise, ..Stop::default() },
+            stop: step.stop,
         };
         documents.push((step, document));
     }

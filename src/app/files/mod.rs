@@ -187,21 +187,19 @@ impl Files {
         }
     }
 
-    /// Reports how far something is that is made in the background.
-    pub fn follow_making(&mut self, context: &Context, toasts: &mut Toasts) {
+    /// Reports how far something is that is made in the background, and whether the window closes then.
+    pub fn follow_making(&mut self, context: &Context, toasts: &mut Toasts, leaves: bool) {
         toasts.withdraw(Command::StopSaving);
         let Some(Making { words, percent, .. }) = &self.making else { return };
-        let words = match percent.load(Ordering::Relaxed) {
-            0 => format!("{words}…"),
-            percent => format!("{words}, {percent} %"),
-        };
-        toasts.offer(words, &[Command::StopSaving]);
+        let then = if leaves { ". Then the window closes" } else { "" };
+        let percent = percent.load(Ordering::Relaxed);
+        toasts.offer(format!("{words}, {percent} %{then}"), &[Command::StopSaving]);
         context.request_repaint_after(Duration::from_millis(250));
     }
 
     /// Saves and copies what was asked for, once there are samples; returns the picture to save that was left before.
     pub fn follow(&mut self, context: &Context, subject: &Subject<'_>) -> Option<Lost> {
-        let (document, is_there) = (subject.document, subject.has_samples());
+        let (document, is_there) = (subject.document(), subject.has_samples());
         if let Some(Ok(())) = self.copy.take(document, is_there) {
             self.copy(context, subject);
         }
@@ -214,10 +212,10 @@ impl Files {
 
     /// Writes the film on the screen as it is at the next end of a pass.
     fn save(&mut self, context: &Context, subject: &Subject<'_>, named: (OutputFormat, PathBuf)) {
-        let (document, tracing) = (subject.document.clone(), subject.tracing);
+        let (document, tracing) = (subject.document().clone(), subject.tracing);
         let describe = describer(&document, tracing.main.status(), tracing.main.seconds_before);
         let answer = self.saved.promise(context);
-        let is_denoised = subject.is_denoised;
+        let is_denoised = subject.model.view.shows_denoised();
         tracing.main.inspect(move |film| {
             let copy = film.try_copy().map_err(|error| error.to_string());
             answer.give_from("save", move || write(&copy?, is_denoised, &document, describe, named));
@@ -226,7 +224,8 @@ impl Files {
 
     /// Resolves the film on the screen as it is saved with 8 bits, at the next end of a pass.
     fn copy(&mut self, context: &Context, subject: &Subject<'_>) {
-        let (transfer, is_denoised) = (subject.document.rules().transfer, subject.is_denoised);
+        let transfer = subject.document().rules().transfer;
+        let is_denoised = subject.model.view.shows_denoised();
         let answer = self.copied.answer(context);
         subject.tracing.main.inspect(move |film| {
             let copy = film.try_copy().map_err(|error| error.to_string());

@@ -1,8 +1,8 @@
-//! The scene file of the picture is read again when another program has changed it.
+//! Notices when another program has changed the scene file of the picture, which is opened again then.
 
 use crate::app::model::{Origin, Source};
 use crate::app::toolkit::Answers;
-use crate::job::recipe::{Recipe, file};
+use crate::job::recipe::file;
 use eframe::egui::Context;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ const LOOKS_APART: Duration = Duration::from_millis(500);
 pub struct SceneFile {
     /// The origin whose file is watched.
     watched: Option<Arc<Origin>>,
-    pub reread: Answers<Recipe>,
+    pub changes: Answers<PathBuf>,
 }
 
 impl SceneFile {
@@ -26,7 +26,7 @@ impl SceneFile {
         // The thread of the file before ends with its slot.
         *self = SceneFile { watched: Some(Arc::clone(origin)), ..SceneFile::default() };
         let Source::File(path) = &origin.source else { return };
-        let (path, answer) = (path.clone(), self.reread.answer(context));
+        let (path, answer) = (path.clone(), self.changes.answer(context));
         let look = move || {
             let mut inputs = file::inputs(&path);
             let mut known = stamps(&inputs);
@@ -38,11 +38,7 @@ impl SceneFile {
                 if now == last && now != known && now[0].is_some() {
                     inputs = file::inputs(&path);
                     known = stamps(&inputs);
-                    let recipe = file::load(&path).and_then(|recipe| {
-                        recipe.job()?;
-                        Ok(recipe)
-                    });
-                    answer.give(recipe.map_err(|error| error.to_string()));
+                    answer.give(Ok(path.clone()));
                 }
                 last = now;
             }

@@ -1,8 +1,9 @@
 //! Tracks what the user has changed since the previous frame: moves, gestures and undo steps.
 
-use super::{Document, Source};
+use super::{Document, Model, Partner, Source};
 use eframe::egui::Context;
 use std::collections::VecDeque;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// After this long without a move the picture is rendered at its full size.
@@ -11,14 +12,29 @@ const SETTLE: Duration = Duration::from_millis(160);
 /// Maximum number of undo steps.
 const STEPS: usize = 100;
 
+/// What has changed since the frame before, once nothing more changes the document in this one.
+#[derive(Clone, Copy)]
+pub struct Changed {
+    pub document: bool,
+    /// Another picture is shown.
+    pub picture: bool,
+    /// The document needs a different film.
+    pub film: bool,
+    /// Of the same picture, when the render ends.
+    pub stop: bool,
+    /// What it is compared with, if that is asked for.
+    pub partner: bool,
+}
+
 /// The history of the document.
 pub struct Changes {
     /// The document at the end of each change or gesture, oldest first.
     done: VecDeque<Document>,
     /// The documents that were undone, the next one to redo last.
     undone: Vec<Document>,
-    /// The document of the frame before.
+    /// The document of the frame before, and what it was compared with.
     pub last: Document,
+    partner: Option<Partner>,
     moved: Option<Instant>,
     /// A move was noted in this frame, however long the frame takes.
     has_moved: bool,
@@ -30,7 +46,8 @@ impl Changes {
     /// A history that starts with `document`.
     pub fn new(document: Document) -> Self {
         let (done, undone) = ([document.clone()].into(), Vec::new());
-        Changes { done, undone, last: document, moved: None, has_moved: false, is_in_gesture: false }
+        let (moved, partner) = (None, None);
+        Changes { done, undone, last: document, partner, moved, has_moved: false, is_in_gesture: false }
     }
 
     /// A history of these documents, oldest first; `shown` is the last one.
@@ -106,12 +123,24 @@ impl Changes {
         self.moved.is_some_and(|at| at.elapsed() < SETTLE)
     }
 
-    /// Notes what has changed in this frame. Returns whether the document now needs a different film. The picture of a
-    /// check, a visit, is no step.
-    pub fn follow(&mut self, context: &Context, document: &Document, is_visit: bool) -> bool {
+    /// Compares the model with that of the frame before.
+    pub fn look(&mut self, model: &Model) -> Changed {
+        let (document, last) = (&model.document, &self.last);
+        let partner = model.view.compared(document);
+        let picture = !Arc::ptr_eq(&document.origin, &last.origin);
+        Changed {
+            document: document != last,
+            picture,
+            film: !document.has_same_film(last),
+            stop: !picture && document.stop != last.stop,
+            partner: std::mem::replace(&mut self.partner, partner) != partner,
+        }
+    }
+
+    /// Notes what has changed in this frame. The picture of a check, a visit, is no step.
+    pub fn follow(&mut self, context: &Context, document: &Document, changed: Changed, is_visit: bool) {
         let is_by_hand = context.input(|input| input.pointer.any_down());
-        let is_other_film = !document.has_same_film(&self.last);
-        if *document != self.last && is_other_film && is_by_hand {
+        if changed.document && changed.film && is_by_hand {
             self.note_move();
         }
         self.last = document.clone();
@@ -122,7 +151,6 @@ impl Changes {
         if !self.is_in_gesture && !is_visit {
             end_step(&mut self.done, document);
         }
-        is_other_film
     }
 }
 
@@ -138,7 +166,7 @@ fn end_step(done: &mut VecDeque<Document>, document: &Document) {
 fn restore(document: &mut Document, state: Document) {
     let before = std::mem::replace(document, state);
     let follows = !before.has_own_size && !document.has_own_size;
-    if follows && std::sync::Arc::ptr_eq(&before.origin, &document.origin) {
+    if follows && Arc::ptr_eq(&before.origin, &document.origin) {
         document.set_size(before.size());
     }
 }
@@ -147,8 +175,18 @@ fn restore(document: &mut Document, state: Document) {
 mod tests {
     use super::*;
     use crate::app::model::Origin;
+    use crate::app::tests::window;
     use crate::progressive::Stop;
     use eframe::egui::{Event, Modifiers, PointerButton, Pos2, RawInput};
+
+    /// Follows `document`. Returns whether it needs a different film.
+    fn follow(changes: &mut Changes, context: &Context, document: &Document, is_visit: bool) -> bool {
+        let mut model = window("weekender --stage metal --size 16x9 --device cpu").model.clone();
+        model.document = document.clone();
+        let changed = changes.look(&model);
+        changes.follow(context, document, changed, is_visit);
+        changed.film
+    }
 
     #[test]
     fn a_move_with_long_frames_is_one_undo_step() {
@@ -159,7 +197,7 @@ mod tests {
             changes.note_move();
             changes.moved = Instant::now().checked_sub(2 * SETTLE);
             document.camera.vfov_degrees += f64::from(step);
-            assert!(changes.follow(&context, &document, false));
+            assert!(follow(&mut changes, &context, &document, false));
         }
         changes.undo(&mut document);
         assert_eq!(document.camera, first);
@@ -171,7 +209,7 @@ mod tests {
         let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
         let mut changes = Changes::new(document.clone());
         document.stop.seconds = Some(7.0);
-        assert!(!changes.follow(&context, &document, false), "the film stays the same");
+        assert!(!follow(&mut changes, &context, &document, false), "the film stays the same");
         assert!(changes.earlier(&document).is_some());
         changes.undo(&mut document);
         assert_eq!(document.stop.seconds, None);
@@ -190,23 +228,23 @@ mod tests {
         let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
         let mut changes = Changes::new(document.clone());
         press(&context, true);
-        assert!(!changes.follow(&context, &document, false), "nothing has changed yet");
+        assert!(!follow(&mut changes, &context, &document, false), "nothing has changed yet");
         for seconds in [7.0, 8.0] {
             document.stop.seconds = Some(seconds);
-            assert!(!changes.follow(&context, &document, false));
+            assert!(!follow(&mut changes, &context, &document, false));
             assert!(changes.moved.is_none(), "the film stays the same, so nothing is previewed");
         }
         press(&context, false);
-        changes.follow(&context, &document, false);
+        follow(&mut changes, &context, &document, false);
         document.stop.seconds = Some(9.0);
-        changes.follow(&context, &document, false);
+        follow(&mut changes, &context, &document, false);
         // A visit to another picture is no step.
         let visited = Document { stop: Stop::at_samples(5), ..document.clone() };
-        changes.follow(&context, &visited, true);
-        changes.follow(&context, &document, false);
+        follow(&mut changes, &context, &visited, true);
+        follow(&mut changes, &context, &document, false);
         for expected in [Some(8.0), None] {
             changes.undo(&mut document);
-            changes.follow(&context, &document, false);
+            follow(&mut changes, &context, &document, false);
             assert_eq!(document.stop.seconds, expected);
         }
         assert!(changes.earlier(&document).is_none());

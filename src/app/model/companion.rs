@@ -20,14 +20,9 @@ fn page_beside(directory: &Path) -> Option<PathBuf> {
 /// The URL of the companion with this absolute path, at the first figure that shows the stage.
 pub fn url(page: &Path, stage: Option<&Stage>) -> String {
     let anchor = stage.map_or_else(String::new, |stage| format!("#stage-{}", stage.id));
-    format!("{}{anchor}", file_url(page))
-}
-
-/// The URL of a file or folder with this absolute path.
-pub fn file_url(path: &Path) -> String {
     // Characters that end or change a path in a URL.
-    let path = path.display().to_string().replace('%', "%25").replace('#', "%23").replace('?', "%3F");
-    format!("file:///{}", path.replace(' ', "%20").replace('\\', "/").trim_start_matches('/'))
+    let path = page.display().to_string().replace('%', "%25").replace('#', "%23").replace('?', "%3F");
+    format!("file:///{}{anchor}", path.replace(' ', "%20").replace('\\', "/").trim_start_matches('/'))
 }
 
 #[cfg(test)]

@@ -6,27 +6,6 @@ use crate::render_gpu::{AdapterInfo, GpuOptions, INTERACTIVE_TARGET, adapters};
 use serde::{Deserialize, Serialize};
 use std::sync::OnceLock;
 
-/// Options of the devices, from the command line.
-#[derive(Clone, Debug, Default)]
-pub struct DeviceOptions {
-    cpu: CpuOptions,
-    gpu: GpuOptions,
-}
-
-impl DeviceOptions {
-    /// The options of a backend. Those that it does not use get their defaults.
-    pub fn of(choice: &BackendChoice) -> Self {
-        match choice {
-            BackendChoice::Cpu(cpu) => DeviceOptions { cpu: *cpu, ..Self::default() },
-            BackendChoice::Gpu(gpu) => DeviceOptions { gpu: gpu.clone(), ..Self::default() },
-            BackendChoice::Reference { threads } => DeviceOptions {
-                cpu: CpuOptions { threads: *threads, ..CpuOptions::default() },
-                ..Self::default()
-            },
-        }
-    }
-}
-
 /// The adapter that the GPU device uses; hardware adapters come first. The result is cached, because the search takes a
 /// while and adapters rarely change.
 pub fn adapter() -> Result<&'static AdapterInfo, String> {
@@ -58,16 +37,12 @@ impl Device {
     /// All devices, in the order of the toggle.
     pub const ALL: [Device; 3] = [Device::Cpu, Device::Gpu, Device::Reference];
 
-    /// The name used by `--device`, the label in the window, and a short description.
-    fn words(self) -> [&'static str; 3] {
+    /// The name used by `--device`, and the label in the window.
+    fn words(self) -> [&'static str; 2] {
         match self {
-            Device::Cpu => ["cpu", "CPU", "Trace on the processor"],
-            Device::Gpu => ["gpu", "GPU", "Trace on the graphics card, usually many times faster"],
-            Device::Reference => [
-                "reference",
-                "Reference",
-                "Trace with 16 digits instead of 7, slowly, to show rounding errors",
-            ],
+            Device::Cpu => ["cpu", "CPU"],
+            Device::Gpu => ["gpu", "GPU"],
+            Device::Reference => ["reference", "Reference"],
         }
     }
 
@@ -79,15 +54,6 @@ impl Device {
         self.words()[1]
     }
 
-    pub fn help(self) -> &'static str {
-        match (self, adapter()) {
-            (Device::Gpu, Ok(adapter)) if adapter.is_software => {
-                "No graphics card: \"GPU\" runs on the processor and is slower"
-            }
-            _ => self.words()[2],
-        }
-    }
-
     /// The device of a backend.
     pub fn of(choice: &BackendChoice) -> Self {
         match choice {
@@ -97,24 +63,22 @@ impl Device {
         }
     }
 
-    /// This other device, or the CPU again.
-    pub fn toggled(self, other: Device) -> Device {
-        if self == other { Device::Cpu } else { other }
-    }
-
-    /// The backend for the device.
-    pub fn backend(self, options: &DeviceOptions) -> BackendChoice {
-        let threads = options.cpu.threads.or_else(threads_of_window);
-        let cpu = CpuOptions { threads, low_priority: true, ..options.cpu };
+    /// The backend for the device, with the options of the one that was given on the command line as far as it has them.
+    pub fn backend(self, given: &BackendChoice) -> BackendChoice {
+        let (cpu, gpu) = match given {
+            BackendChoice::Cpu(cpu) => (*cpu, GpuOptions::default()),
+            BackendChoice::Gpu(gpu) => (CpuOptions::default(), gpu.clone()),
+            BackendChoice::Reference { threads } => {
+                (CpuOptions { threads: *threads, ..CpuOptions::default() }, GpuOptions::default())
+            }
+        };
+        let threads = cpu.threads.or_else(threads_of_window);
+        let cpu = CpuOptions { threads, low_priority: true, ..cpu };
         // A user who presses the button wants it, so a software adapter is accepted.
-        let dispatch_target = options.gpu.dispatch_target.min(INTERACTIVE_TARGET);
+        let dispatch_target = gpu.dispatch_target.min(INTERACTIVE_TARGET);
         match self {
             Device::Cpu => BackendChoice::Cpu(cpu),
-            Device::Gpu => BackendChoice::Gpu(GpuOptions {
-                allow_software: true,
-                dispatch_target,
-                ..options.gpu.clone()
-            }),
+            Device::Gpu => BackendChoice::Gpu(GpuOptions { allow_software: true, dispatch_target, ..gpu }),
             Device::Reference => BackendChoice::Reference { threads },
         }
     }
@@ -151,9 +115,9 @@ mod tests {
 
     #[test]
     fn every_device_has_its_backend_and_says_what_is_wrong() {
-        let options = DeviceOptions::default();
+        let given = BackendChoice::Cpu(CpuOptions::default());
         for device in Device::ALL {
-            let choice = device.backend(&options);
+            let choice = device.backend(&given);
             assert_eq!((Device::of(&choice), choice.name()), (device, device.name()));
             assert!(device.unavailable().is_none_or(|reason| reason.len() > 10));
         }
@@ -161,22 +125,18 @@ mod tests {
 
     #[test]
     fn each_device_takes_its_options() {
-        let cpu = CpuOptions { threads: Some(3), ..CpuOptions::default() };
-        let long = std::time::Duration::from_secs(9);
-        let gpu =
-            GpuOptions { adapter: Some("mine".to_owned()), dispatch_target: long, ..GpuOptions::default() };
-        let options = DeviceOptions { cpu, gpu: gpu.clone() };
-        let BackendChoice::Cpu(found) = Device::Cpu.backend(&options) else { panic!("no CPU") };
+        let given = BackendChoice::Cpu(CpuOptions { threads: Some(3), ..CpuOptions::default() });
+        let BackendChoice::Cpu(found) = Device::Cpu.backend(&given) else { panic!("no CPU") };
         assert_eq!((found.threads, found.lanes, found.low_priority), (Some(3), None, true));
-        let BackendChoice::Gpu(found_gpu) = Device::Gpu.backend(&options) else { panic!("no GPU") };
-        assert_eq!((found_gpu.adapter.as_deref(), found_gpu.allow_software), (Some("mine"), true));
-        assert_eq!(found_gpu.dispatch_target, INTERACTIVE_TARGET, "the window stays responsive");
-        let short = std::time::Duration::from_millis(1);
-        let options = DeviceOptions::of(&BackendChoice::Gpu(GpuOptions { dispatch_target: short, ..gpu }));
-        let BackendChoice::Gpu(found) = Device::Gpu.backend(&options) else { panic!("no GPU") };
-        assert_eq!(found.dispatch_target, short);
-        let options = DeviceOptions::of(&BackendChoice::Reference { threads: Some(5) });
-        let found = Device::Reference.backend(&options);
-        assert_eq!(found, BackendChoice::Reference { threads: Some(5) });
+        for (seconds, expected) in [(9.0, INTERACTIVE_TARGET.as_secs_f64()), (0.001, 0.001)] {
+            let dispatch_target = std::time::Duration::from_secs_f64(seconds);
+            let adapter = Some("mine".to_owned());
+            let given = BackendChoice::Gpu(GpuOptions { adapter, dispatch_target, ..GpuOptions::default() });
+            let BackendChoice::Gpu(found) = Device::Gpu.backend(&given) else { panic!("no GPU") };
+            assert_eq!((found.adapter.as_deref(), found.allow_software), (Some("mine"), true));
+            assert_eq!(found.dispatch_target.as_secs_f64(), expected, "the window stays responsive");
+        }
+        let given = BackendChoice::Reference { threads: Some(5) };
+        assert_eq!(Device::Reference.backend(&given), given);
     }
 }

@@ -133,10 +133,10 @@ impl KeptList {
         self.pictures.iter().position(|other| other.number == kept.number).unwrap_or_default()
     }
 
-    /// Adds a picture. Returns its place.
-    pub fn add(&mut self, kept: Kept) -> usize {
-        self.pictures.push(Arc::new(kept));
-        self.pictures.len() - 1
+    pub fn add(&mut self, kept: Kept) -> Arc<Kept> {
+        let kept = Arc::new(kept);
+        self.pictures.push(Arc::clone(&kept));
+        kept
     }
 
     /// Removes a picture; later ones move up.

@@ -21,7 +21,7 @@ mod view;
 mod wish;
 
 pub use checked::CheckedScene;
-pub use device::{Device, DeviceOptions, adapter, best_isa};
+pub use device::{Device, adapter, best_isa};
 pub use document::Document;
 pub use edit::{Body, Edit, kind_word};
 pub use kept::{Kept, KeptList};
@@ -29,7 +29,7 @@ pub use origin::{Origin, Source};
 pub use partner::Partner;
 pub use remembered::{Dock, Remembered, Stored, Tab};
 pub use show::{Show, Tone};
-pub use sizing::{Sizing, at_other, laid_over};
+pub use sizing::{Sizing, at_other, laid_over, middle_of};
 pub use state::{Model, Presentation};
 pub use view::{Found, Mode, ViewState};
 pub use wish::Wish;

@@ -2,6 +2,7 @@
 //! not made.
 
 use super::spheres::{clearance, ground};
+use crate::numbers::rounded;
 use crate::scene::{Camera, Scene};
 use glam::{DQuat, DVec3};
 use std::f64::consts::PI;
@@ -108,20 +109,14 @@ fn rotation(camera: &Camera, about_up: f64, up: f64) -> DQuat {
 
 fn kept(old: &Camera, new: Camera) -> Camera {
     let scale = new.look_from.abs().max_element().max(new.look_at.abs().max_element());
-    let tidy = |point: DVec3| point.map(|n| without_dust(n, scale));
+    // To thirteen digits, without what rounding adds and the sign of a zero.
+    let tidy = |point: DVec3| point.map(|n| rounded(n, scale, 13) + 0.0);
     let new = Camera {
         look_from: if new.look_from == old.look_from { old.look_from } else { tidy(new.look_from) },
         look_at: if new.look_at == old.look_at { old.look_at } else { tidy(new.look_at) },
         ..new
     };
     if new.validate().is_ok() { new } else { *old }
-}
-
-/// A coordinate to thirteen digits of the largest one, without what rounding adds.
-fn without_dust(n: f64, scale: f64) -> f64 {
-    let factor = 10.0_f64.powi(12 - scale.log10().floor().clamp(-9.0, 300.0) as i32);
-    // Without the sign of a zero, too.
-    (n * factor).round() / factor + 0.0
 }
 
 #[cfg(test)]

@@ -18,14 +18,12 @@ pub enum Source {
     Stage(&'static Stage),
     /// A new scene, which is in no file.
     New,
-    /// A built-in scene. The recipe has its name.
+    /// A built-in scene, or one by the book's own arithmetic. The recipe has its name.
     Builtin,
     /// A scene file.
     File(PathBuf),
     /// An extreme scene.
     Extreme(&'static Case),
-    /// The same picture as another origin's, by the book's own arithmetic.
-    ByTheBook,
     /// A picture that contains its recipe. Its scene is in no other file.
     Embedded,
 }
@@ -100,7 +98,7 @@ impl Origin {
             scene: Arc::clone(scene.scene()),
             ..by_the_book(&self.recipe)
         };
-        Origin::new(recipe, Source::ByTheBook)
+        Origin::new(recipe, Source::Builtin)
     }
 
     /// Whether the book's own arithmetic would give a picture that differs from this one.
@@ -201,7 +199,7 @@ mod tests {
         let book = origin.by_the_book(&edited);
         assert_eq!((&*book.recipe.scene, &**book.scene.scene()), (&scene, &scene));
         let rules = Rules { surface: SurfaceRule::Book, ..origin.recipe.rules };
-        assert_eq!((&book.source, book.recipe.rules), (&Source::ByTheBook, rules));
+        assert_eq!((&book.source, book.recipe.rules), (&Source::Builtin, rules));
         assert!(origin.is_other_by_the_book() && !book.is_other_by_the_book(), "it is that already");
         let is_other = |id| Origin::of_stage(Stage::find(id).unwrap()).is_other_by_the_book();
         // The first one traces no rays, and the last one has another threshold than the book.

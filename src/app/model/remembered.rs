@@ -49,17 +49,15 @@ impl Tab {
 }
 
 /// Settings of the window, as opposed to those of the picture.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Remembered {
     /// The colour theme.
     pub theme: ThemePreference,
-    /// Whether panels are shown at all.
-    pub has_panels: bool,
-    /// Whether the left panel is shown.
-    pub has_controls: bool,
-    /// Whether the right panel is shown.
-    pub has_info: bool,
+    /// Whether the left panel is hidden.
+    pub hides_controls: bool,
+    /// Whether the right panel is hidden.
+    pub hides_info: bool,
     /// The open tab of the dock under the picture.
     pub dock: Option<Dock>,
     /// The open tab of the right panel.
@@ -76,25 +74,6 @@ pub struct Remembered {
     pub mine_stage: Option<String>,
     /// The ids of the stages whose picture by another program was right.
     pub done: BTreeSet<String>,
-}
-
-impl Default for Remembered {
-    fn default() -> Self {
-        Remembered {
-            theme: ThemePreference::System,
-            has_panels: true,
-            has_controls: true,
-            has_info: true,
-            dock: None,
-            tab: Tab::Stage,
-            sizing: Sizing::Viewport,
-            device: Device::Cpu,
-            recent: Vec::new(),
-            mine: None,
-            mine_stage: None,
-            done: BTreeSet::new(),
-        }
-    }
 }
 
 /// What eframe stores for the next window: settings and view. Those of another version are not read.
@@ -118,14 +97,10 @@ impl Stored {
 
     pub fn write(remembered: Remembered, view: ViewState, storage: &mut dyn Storage) {
         eframe::set_value(storage, Stored::KEY, &Stored { version: Stored::VERSION, remembered, view });
-    }
-
-    /// The next window does not begin in full screen, where one would look for its title bar in vain.
-    pub fn forget_full_screen(storage: &mut dyn Storage) {
-        /// eframe's own entry, in RON.
-        const WINDOW: &str = "window";
-        if let Some(window) = storage.get_string(WINDOW) {
-            storage.set_string(WINDOW, window.replace("fullscreen:true", "fullscreen:false"));
+        // The next window does not begin in full screen, where one would look for its title bar in vain. The entry is
+        // eframe's own, in RON.
+        if let Some(window) = storage.get_string("window") {
+            storage.set_string("window", window.replace("fullscreen:true", "fullscreen:false"));
         }
     }
 }
@@ -146,8 +121,6 @@ impl Remembered {
         if self.device.unavailable().is_some() {
             self.device = Device::Cpu;
         }
-        // A window that opens without any panel would confuse the user.
-        self.has_panels = true;
         self.recent.truncate(RECENT_LIMIT);
         self
     }

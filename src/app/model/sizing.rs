@@ -63,11 +63,16 @@ pub fn laid_over(mine: [u32; 2], theirs: [u32; 2]) -> [[f64; 2]; 2] {
     [size.map(|along| 0.5 * (1.0 - along)), size]
 }
 
+/// The middle of a pixel as a place in the picture, `0..=1` from the upper left.
+pub fn middle_of(at: [u32; 2], size: [u32; 2]) -> [f64; 2] {
+    [0, 1].map(|axis| (f64::from(at[axis]) + 0.5) / f64::from(size[axis]))
+}
+
 /// The pixel of such a picture that lies over the middle of the one at `at`.
 pub fn at_other(at: [u32; 2], mine: [u32; 2], theirs: [u32; 2]) -> Option<[u32; 2]> {
-    let [corner, size] = laid_over(mine, theirs);
+    let ([corner, size], middle) = (laid_over(mine, theirs), middle_of(at, mine));
     let [x, y] = [0, 1].map(|axis| {
-        let place = ((f64::from(at[axis]) + 0.5) / f64::from(mine[axis]) - corner[axis]) / size[axis];
+        let place = (middle[axis] - corner[axis]) / size[axis];
         // Rounding must not lead to the pixel before.
         let pixel = (place * f64::from(theirs[axis]) + 1e-6).floor();
         (pixel >= 0.0 && pixel < f64::from(theirs[axis])).then_some(pixel as u32)

@@ -1,7 +1,7 @@
 //! Everything that the user has chosen.
 
 use super::animation::Play;
-use super::{Device, DeviceOptions, Document, Mode, Partner, Remembered, Show, Tab, ViewState};
+use super::{Device, Document, Mode, Partner, Remembered, Show, Tab, ViewState};
 use crate::backends::BackendChoice;
 use crate::progressive::Stop;
 use crate::stages::{Shading, Stage};
@@ -30,12 +30,14 @@ pub struct Model {
     pub view: ViewState,
     /// The window's settings, including the device.
     pub remembered: Remembered,
-    /// Device options from the command line.
-    pub devices: DeviceOptions,
+    /// The backend of the command line, with its options.
+    pub given: BackendChoice,
     /// Whether tracing is paused.
     pub is_paused: bool,
     /// The animation that is played.
     pub playing: Option<Play>,
+    /// Whether only the picture is shown.
+    pub hides_panels: bool,
     /// Whether the window is in full-screen mode.
     pub is_full_screen: bool,
     /// The presentation in progress.
@@ -45,12 +47,12 @@ pub struct Model {
 impl Model {
     /// Whether panels are shown. A presentation has none.
     pub fn has_panels(&self) -> bool {
-        self.remembered.has_panels && self.presentation.is_none()
+        !self.hides_panels && self.presentation.is_none()
     }
 
     /// Whether the right panel shows this tab.
     pub fn shows(&self, tab: Tab) -> bool {
-        self.has_panels() && self.remembered.has_info && self.remembered.tab == tab
+        self.has_panels() && !self.remembered.hides_info && self.remembered.tab == tab
     }
 
     /// The backend for the chosen device.
@@ -68,7 +70,7 @@ impl Model {
 
     /// The backend for another device.
     pub fn backend_of(&self, device: Device) -> BackendChoice {
-        device.backend(&self.devices)
+        device.backend(&self.given)
     }
 
     /// All partners to choose from, without the other stages: those with which the picture has something in common.

@@ -78,8 +78,8 @@ impl ViewState {
         }
     }
 
-    /// Keeps a picture, to compare with unless another one is compared with. Returns its place.
-    pub fn keep(&mut self, kept: Kept) -> usize {
+    /// Keeps a picture, to compare with unless another one is compared with.
+    pub fn keep(&mut self, kept: Kept) -> Arc<Kept> {
         if self.mode.is_none() {
             self.partner = Partner::Kept(kept.number);
         }

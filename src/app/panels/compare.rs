@@ -2,11 +2,10 @@
 
 use crate::app::commands::{Command, PanelContext};
 use crate::app::model::{Dock, Partner};
+use crate::app::toolkit::menu::item;
 use crate::app::toolkit::number::samples_words;
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{
-    About, caption, command_button, command_entry, command_switch, list, small,
-};
+use crate::app::toolkit::widgets::{About, caption, command_button, command_switch, list, small};
 use crate::stages::Stage;
 use eframe::egui::{Label, RichText, Ui};
 
@@ -34,7 +33,7 @@ pub fn ui(ui: &mut Ui, cx: &PanelContext) {
 }
 
 fn partners(ui: &mut Ui, cx: &PanelContext) {
-    let choose = |ui: &mut Ui, command: Command| command_entry(ui, cx, command, &cx.name(command));
+    let choose = |ui: &mut Ui, command: Command| _ = item(ui, cx, command);
     for partner in cx.model.partners() {
         choose(ui, Command::CompareWith(partner));
     }

@@ -1,16 +1,14 @@
 //! The left panel: camera, lens, sphere, render.
 
-use super::spheres;
 use crate::app::commands::{Command, PanelContext};
 use crate::app::model::spheres::Selected;
 use crate::app::model::{Body, Document, Edit, Remembered, Sizing};
 use crate::app::toolkit::number::{Number, colour, point_words, vector};
 use crate::app::toolkit::widgets::{
-    About, Header, above, check, command_button, entry, fold, group, hint, list, panel_line, row, switch,
+    About, above, entry, fold, hint, list, panel_line, row, small, switch, tip,
 };
-use crate::job::render::{DEPTH_LIMIT, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
+use crate::job::render::{DEPTH_LIMIT, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::progressive::Stop;
-use crate::progressive::describe::counted;
 use crate::scene::{
     Camera, DEFOCUS_LIMIT_DEGREES, FOCUS_LIMITS, LENGTH_LIMIT, Material, RADIUS_LIMITS,
     REFRACTION_INDEX_LIMITS, VFOV_LIMITS_DEGREES,
@@ -19,7 +17,6 @@ use crate::stages::Shading;
 use eframe::egui::Ui;
 use glam::DVec3;
 use std::ops::RangeInclusive;
-use std::sync::Arc;
 
 /// Limits of a coordinate, scene units.
 const POSITIONS: RangeInclusive<f64> = -LENGTH_LIMIT..=LENGTH_LIMIT;
@@ -31,140 +28,90 @@ const FIRST_STEPS: [&str; 3] = [
     "Page Up and Page Down turn the pages of the book.",
 ];
 
-/// The first chapter whose pictures need another up vector or a lens.
-const LENS_CHAPTER: u32 = 12;
-
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx: &PanelContext) {
     let has_rays = document.no_rays().is_none();
     if has_rays {
         camera(ui, document);
         lens(ui, document);
-        scene(ui, document, cx);
         sphere(ui, document, cx);
+        sky(ui, document, cx);
         panel_line(ui);
     }
     ui.spacing_mut().item_spacing.y = 0.0;
     render(ui, document, remembered, cx);
 }
 
-/// Whether the picture is a stage before the chapters about the camera.
-fn is_early(document: &Document) -> bool {
-    let chapter = document.stage().and_then(|stage| stage.section.split('.').next()?.parse().ok());
-    chapter.is_some_and(|chapter: u32| chapter < LENS_CHAPTER)
-}
-
 fn camera(ui: &mut Ui, document: &mut Document) {
-    let is_early = is_early(document);
-    let (original, camera) = (document.origin.recipe.camera, &mut document.camera);
-    let Camera { defocus_angle_degrees, focus_distance, .. } = *camera;
-    let home = Camera { defocus_angle_degrees, focus_distance, ..original };
-    let reset = (*camera != home).then_some("Reset camera");
-    let header = Header { title: "Camera", reset, ..Header::default() };
-    let is_reset = group(ui, header, |ui| {
+    let camera = &mut document.camera;
+    fold(ui, ["Camera", ""], true, |ui| {
         let help = "How wide the camera sees, from the lower to the upper edge, in degrees (vfov)";
         let [narrowest, widest] = VFOV_LIMITS_DEGREES;
         let number = Number::new(About::new("Field of view", help), narrowest..=widest);
         number.unit("°").slider(ui, &mut camera.vfov_degrees, narrowest..=widest, false);
-        let summary = point_words(camera.look_from);
-        let header = Header { title: "Position", summary: &summary, is_minor: true, ..Header::default() };
-        fold(ui, header, false, |ui| position(ui, camera, is_early));
+        let place = point_words(camera.look_from);
+        fold(ui, ["Position", &place], false, |ui| position(ui, camera));
     });
-    if is_reset {
-        *camera = home;
-    }
 }
 
-fn position(ui: &mut Ui, camera: &mut Camera, is_early: bool) {
+fn position(ui: &mut Ui, camera: &mut Camera) {
     let speed = (camera.look_from.distance(camera.look_at) * 0.005).max(1e-4);
     let about = About::new("Look from", "Where the eye is, in units of the scene (lookfrom)");
     vector(ui, about, &mut camera.look_from, POSITIONS, speed);
     let about = About::new("Look at", "The point in the middle of the picture (lookat)");
     vector(ui, about, &mut camera.look_at, POSITIONS, speed);
-    if !is_early {
-        let about = About::new("Up", "Which way is up in the picture; the length does not matter (vup)");
-        vector(ui, about, &mut camera.vup, POSITIONS, 0.01);
-    }
+    let about = About::new("Up", "Which way is up in the picture; the length does not matter (vup)");
+    vector(ui, about, &mut camera.vup, POSITIONS, 0.01);
 }
 
 fn lens(ui: &mut Ui, document: &mut Document) {
-    let is_early = is_early(document);
-    let (original, camera) = (document.origin.recipe.camera, &mut document.camera);
-    let Camera { defocus_angle_degrees, focus_distance, .. } = original;
-    let home = Camera { defocus_angle_degrees, focus_distance, ..*camera };
-    let summary = if camera.defocus_angle_degrees == 0.0 { "pinhole" } else { "" };
-    let reset = (*camera != home).then_some("Reset lens");
-    let header = Header { title: "Lens", summary, reset, ..Header::default() };
-    let controls = |ui: &mut Ui| lens_controls(ui, camera, defocus_angle_degrees);
-    let is_reset = if is_early { fold(ui, header, false, controls) } else { group(ui, header, controls) };
-    if is_reset {
-        *camera = home;
-    }
-}
-
-fn lens_controls(ui: &mut Ui, camera: &mut Camera, original: f64) {
     /// The widest lens of the slider blurs what is far away by this share of the picture's height.
     const BLUR: f64 = 0.1;
-    let help = "How wide the lens is open: 0 is a pinhole, which is sharp everywhere (defocus_angle)";
-    let limits = 0.0..=DEFOCUS_LIMIT_DEGREES.next_down();
-    let widest = 2.0 * (BLUR * (camera.vfov_degrees.to_radians() / 2.0).tan()).atan().to_degrees();
-    let number = Number::new(About::new("Defocus angle", help), limits).unit("°").speed(0.02);
-    number.slider(ui, &mut camera.defocus_angle_degrees, 0.0..=widest.max(original), true);
-    let help = "How far away things are sharp; Ctrl and a click on the picture set it too (focus_dist)";
-    let pinhole = (camera.defocus_angle_degrees == 0.0)
-        .then_some("A pinhole is sharp everywhere; set a defocus angle above 0 first");
-    let number = Number::new(About::new("Focus distance", help).disabled_if(pinhole), FOCUS_LIMITS);
-    let (usual, mut distance) =
-        (camera.look_from.distance(camera.look_at), camera.effective_focus_distance());
-    number.slider(ui, &mut distance, 0.1 * usual..=10.0 * usual, true);
-    if distance != camera.effective_focus_distance() {
-        camera.focus_distance = Some(distance);
-    }
+    let original = document.origin.recipe.camera.defocus_angle_degrees;
+    let camera = &mut document.camera;
+    let is_pinhole = camera.defocus_angle_degrees == 0.0;
+    fold(ui, ["Lens", if is_pinhole { "pinhole" } else { "" }], original > 0.0, |ui| {
+        let help = "How wide the lens is open: 0 is a pinhole, which is sharp everywhere (defocus_angle)";
+        let limits = 0.0..=DEFOCUS_LIMIT_DEGREES.next_down();
+        let widest = 2.0 * (BLUR * (camera.vfov_degrees.to_radians() / 2.0).tan()).atan().to_degrees();
+        let number = Number::new(About::new("Defocus angle", help), limits).unit("°").speed(0.02);
+        number.slider(ui, &mut camera.defocus_angle_degrees, 0.0..=widest.max(original), true);
+        let help = "How far away things are sharp; Ctrl and a click on the picture set it too (focus_dist)";
+        let reason = "A pinhole is sharp everywhere; set a defocus angle above 0 first";
+        let about = About::new("Focus distance", help).disabled_if(is_pinhole.then_some(reason));
+        let (usual, before) = (camera.look_from.distance(camera.look_at), camera.effective_focus_distance());
+        let mut distance = before;
+        Number::new(about, FOCUS_LIMITS).slider(ui, &mut distance, 0.1 * usual..=10.0 * usual, true);
+        if distance != before {
+            camera.focus_distance = Some(distance);
+        }
+    });
 }
 
-fn sphere(ui: &mut Ui, document: &mut Document, cx: &PanelContext) {
-    let selected = Selected::of(&cx.model);
-    let title = selected.as_ref().map_or("Sphere".to_owned(), |selected| {
-        format!("Sphere {}: {}", selected.sphere + 1, selected.material)
-    });
-    let reset = document.has_changed_scene().then_some("Reset spheres");
-    let is_reset = group(ui, Header { title: &title, reset, ..Header::default() }, |ui| {
-        let Some(selected) = selected else {
+fn sphere(ui: &mut Ui, document: &Document, cx: &PanelContext) {
+    fold(ui, ["Sphere", ""], true, |ui| {
+        let Some(selected) = Selected::of(&cx.model) else {
             FIRST_STEPS.iter().for_each(|step| _ = hint(ui, step));
             return;
         };
+        small(ui, format!("Number {}, {}", selected.sphere + 1, selected.material));
         let body = body(ui, &selected, document);
         if body != selected.body {
-            cx.edit(Edit::Change(selected.sphere, body));
+            cx.send(Command::Edit(Edit::Change(selected.sphere, body)));
         }
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 4.0;
-            command_button(ui, cx, Command::FocusSphere, "Focus");
-            command_button(ui, cx, Command::DeleteSphere, "Delete");
-        });
     });
-    if is_reset {
-        document.checked = Arc::clone(&document.origin.scene);
-    }
 }
 
-/// All spheres, and the sky, which is the only lamp of the book.
-fn scene(ui: &mut Ui, document: &Document, cx: &PanelContext) {
-    let (mut sky, own) = (document.scene().sky, document.origin.recipe.scene.sky);
-    let reset = (sky != own).then_some("Reset sky");
-    let summary = counted(document.scene().spheres.len() as u64, "sphere");
-    let header = Header { title: "Scene", summary: &summary, reset, ..Header::default() };
-    let is_reset = fold(ui, header, false, |ui| {
-        spheres::ui(ui, cx);
-        ui.add_space(8.0);
-        ui.spacing_mut().item_spacing.y = 8.0;
-        colour(ui, About::new("Sky overhead", "The light from straight above"), &mut sky.top);
+/// The sky, which is the only lamp of the book.
+fn sky(ui: &mut Ui, document: &Document, cx: &PanelContext) {
+    let mut sky = document.scene().sky;
+    fold(ui, ["Sky", ""], false, |ui| {
+        colour(ui, About::new("Overhead", "The light from straight above"), &mut sky.top);
         let help = "The light from straight below, which fades upwards";
-        colour(ui, About::new("Sky at the horizon", help), &mut sky.bottom);
+        colour(ui, About::new("At the horizon", help), &mut sky.bottom);
     });
-    let sky = if is_reset { own } else { sky };
     if sky != document.scene().sky {
-        cx.edit(Edit::Sky(sky));
+        cx.send(Command::Edit(Edit::Sky(sky)));
     }
 }
 
@@ -224,32 +171,16 @@ fn kind(ui: &mut Ui, material: Material, disabled_reason: Option<&str>) -> Mater
 
 /// Size, end and settings of the render.
 fn render(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx: &PanelContext) {
-    let (origin, size) = (Arc::clone(&document.origin), document.size());
-    let is_own = document.has_own_size;
-    let is_resized = is_own != origin.keeps_size() || (is_own && size != origin.size());
-    let usual = RenderSettings { width: size[0], height: size[1], ..origin.recipe.settings };
-    let is_changed = is_resized || document.stop != origin.usual_stop() || document.settings != usual;
-    let summary = format!("{} × {}", size[0], size[1]);
-    let header = Header {
-        title: "Render",
-        summary: &summary,
-        reset: is_changed.then_some("Reset size, samples and tracer"),
-        ..Header::default()
-    };
-    let is_reset = fold(ui, header, document.no_rays().is_some(), |ui| {
+    let [width, height] = document.size();
+    let size = format!("{width} × {height}");
+    fold(ui, ["Render", &size], document.no_rays().is_some(), |ui| {
         sizing(ui, document, remembered, cx);
-        stop(ui, &mut document.stop, origin.recipe.samples_per_pixel);
+        let usual = document.origin.recipe.samples_per_pixel;
+        stop(ui, &mut document.stop, usual);
         if document.is_random() {
             tracer(ui, document);
         }
     });
-    if is_reset {
-        document.settings = usual;
-        (document.has_own_size, document.stop) = (origin.keeps_size(), origin.usual_stop());
-        if document.has_own_size {
-            document.set_size(origin.size());
-        }
-    }
 }
 
 fn sizing(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx: &PanelContext) {
@@ -283,7 +214,8 @@ fn sizing(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, cx:
     }
     let place = ui.scope_id().with("keeps its shape");
     let mut keeps = ui.data(|data| data.get_temp(place)).unwrap_or(true);
-    check(ui, About::new("Keep the shape", "Width and height change together"), &mut keeps);
+    let check = ui.checkbox(&mut keeps, "Keep the shape");
+    tip(ui, check, "Width and height change together", None);
     ui.data_mut(|data| data.insert_temp(place, keeps));
     if size != before {
         document.give_size(if keeps { in_shape(before, before, size) } else { size });

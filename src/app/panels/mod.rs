@@ -6,7 +6,6 @@ pub mod controls;
 pub mod plot;
 pub mod present;
 pub mod right;
-mod spheres;
 pub mod stage_panel;
 pub mod status;
 pub mod tone;

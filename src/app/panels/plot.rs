@@ -4,11 +4,12 @@
 use super::compare;
 use crate::app::commands::{PanelContext, Snapshot};
 use crate::app::model::Device;
-use crate::app::toolkit::number::{compact, rounded, samples_words};
+use crate::app::toolkit::number::{compact, samples_words};
 use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{hint, small, swatch};
+use crate::numbers::rounded;
 use crate::numbers::statistics::fit::{Point, Prediction, predict};
-use crate::progressive::{HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, Status};
+use crate::progressive::{NOISE_TARGET_FIRST_SAMPLES, Status};
 use eframe::egui::{self, Color32, Rangef, Sense, Ui, UiBuilder, Vec2b};
 use egui_plot::{
     AxisHints, HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, Points, uniform_grid_spacer,
@@ -126,7 +127,7 @@ impl Drawn {
                 drawn.push((if is_device { style(ui, backend).0 } else { of_other }, name.clone(), points));
             }
         }
-        let now = points(status).last().map(at);
+        let now = points(status).last().map(|(_, point)| at(point));
         let expected = prediction(status, goal).zip(now).zip(goal).map(|((ahead, [x, y]), goal)| {
             let seconds = 10_f64.powf(x) + ahead.time.min(FARTHEST);
             let line = vec![[x, y], at(&Point { time: seconds, error: goal })];
@@ -208,9 +209,8 @@ fn two_digits(value: f64) -> String {
 /// Splits a history and the newest error into one curve for each backend; a curve begins where the previous one ends.
 fn curves(status: &Status) -> Vec<(&'static str, Vec<[f64; 2]>)> {
     let mut curves: Vec<(&'static str, Vec<[f64; 2]>)> = Vec::new();
-    let known = status.history.iter().filter(|point| point.rmse_estimate > 0.0 && point.trace_seconds > 0.0);
-    let newest = status.backend.as_ref().map(|backend| backend.name).zip(points(status).last().map(at));
-    for (backend, at) in known.map(|point| (point.backend, of_history(point))).chain(newest) {
+    for (backend, point) in points(status) {
+        let at = at(&point);
         match curves.last_mut() {
             Some((name, points)) if *name == backend => points.push(at),
             last => {
@@ -220,10 +220,6 @@ fn curves(status: &Status) -> Vec<(&'static str, Vec<[f64; 2]>)> {
         }
     }
     curves
-}
-
-fn of_history(point: &HistoryPoint) -> [f64; 2] {
-    at(&Point { time: point.trace_seconds, error: point.rmse_estimate })
 }
 
 /// Where a point lies in the plot: the logarithms of seconds and of per cent.
@@ -237,11 +233,13 @@ fn power(exponent: f64) -> String {
     compact((10_f64.powf(exponent) / decade).round() * decade)
 }
 
-/// All error estimates, the newest last.
-fn points(status: &Status) -> Vec<Point> {
-    let history = status.history.iter().map(|p| Point { time: p.trace_seconds, error: p.rmse_estimate });
-    let now = status.error.map(|error| Point { time: status.trace.as_secs_f64(), error: error.rmse });
-    history.chain(now).filter(|point| point.time > 0.0 && point.error > 0.0).collect()
+/// All error estimates with their backends, the newest last.
+fn points(status: &Status) -> Vec<(&'static str, Point)> {
+    let history = status.history.iter().map(|p| (p.backend, p.trace_seconds, p.rmse_estimate));
+    let now = status.backend.as_ref().zip(status.error);
+    let now = now.map(|(backend, error)| (backend.name, status.trace.as_secs_f64(), error.rmse));
+    let known = history.chain(now).filter(|(_, time, error)| *time > 0.0 && *error > 0.0);
+    known.map(|(backend, time, error)| (backend, Point { time, error })).collect()
 }
 
 /// Predicts in how many seconds the error will reach the target. `None` if it already has, or with too little data.
@@ -277,7 +275,7 @@ mod tests {
     use super::*;
     use crate::film::ErrorEstimate;
     use crate::job::render::BackendInfo;
-    use crate::progressive::{Contribution, Phase};
+    use crate::progressive::{Contribution, HistoryPoint, Phase};
     use std::time::Duration;
 
     fn point(backend: &'static str, samples: u64, trace_seconds: f64) -> HistoryPoint {

@@ -2,8 +2,7 @@
 
 use crate::app::model::Tab;
 use crate::app::toolkit::theme;
-use crate::app::toolkit::widgets::{panel_line, tab};
-use eframe::egui::{CentralPanel, Frame, Margin, Panel, Rangef, ScrollArea, Ui};
+use eframe::egui::{CentralPanel, Margin, Panel, Rangef, ScrollArea, Ui};
 
 /// Points that are left for the picture.
 const PICTURE: f32 = 240.0;
@@ -25,24 +24,6 @@ pub fn panel(tab: Tab, room: f32) -> Panel {
         .default_size(tab.width().min(widest))
         .size_range(Rangef::new(240.0, widest))
         .frame(theme::panel(Margin::ZERO))
-}
-
-/// Draws the tabs. Returns the one to show from now on.
-pub fn tabs(ui: &mut Ui, tabs: &[Tab], shown: Tab) -> Tab {
-    ui.spacing_mut().item_spacing.y = 0.0;
-    let mut chosen = shown;
-    Frame::new().inner_margin(Margin::symmetric(16, 0)).show(ui, |ui| {
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 16.0;
-            for each in tabs {
-                if tab(ui, each.name(), *each == shown).clicked() {
-                    chosen = *each;
-                }
-            }
-        });
-    });
-    panel_line(ui);
-    chosen
 }
 
 /// The foot of the panel, at the same height for all stages.

@@ -2,15 +2,16 @@
 
 use super::plot::prediction;
 use crate::app::commands::{Command, PanelContext, Snapshot};
-use crate::app::toolkit::number::{compact, rounded, samples_words};
+use crate::app::toolkit::number::{compact, samples_words};
 use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{command_button, small, tip};
 use crate::denoise::DenoisedError;
 use crate::film::Film;
 use crate::job::render::BackendInfo;
 use crate::measure::grouped;
+use crate::numbers::rounded;
 use crate::progressive::describe::{counted, seconds as time};
-use crate::progressive::{EndReason, Phase, Status};
+use crate::progressive::{EndReason, Phase};
 use eframe::egui::{
     self, Align, Button, Id, Label, Layout, Margin, PopupCloseBehavior, RectAlign, Response, RichText, Sides,
     Stroke, Ui, accesskit::Live,
@@ -225,24 +226,13 @@ fn figures(snapshot: &Snapshot) -> Vec<(&'static str, String)> {
     vec![
         ("Speed", if has_paths { format!("{speed:.1} million paths per second") } else { unknown() }),
         ("Rays per path", if has_paths { format!("{rays:.1} on average") } else { unknown() }),
-        ("Processor", processors(status).unwrap_or_else(unknown)),
+        ("Processor", status.backend.as_ref().map_or_else(unknown, processor)),
         ("Memory of this picture", format!("{:.1} MB", bytes as f64 / 1e6)),
         (
             "Kept films",
             format!("{}, {:.0} MB of 2,000", snapshot.films.count, snapshot.films.bytes as f64 / 1e6),
         ),
     ]
-}
-
-/// Which processors traced the picture, with the share of each if there are several.
-fn processors(status: &Status) -> Option<String> {
-    let total: u64 = status.contributions.iter().map(|part| part.samples_per_pixel).sum();
-    let parts = status.contributions.iter().map(|part| {
-        let share = 100.0 * part.samples_per_pixel as f64 / total.max(1) as f64;
-        let share = if status.contributions.len() > 1 { format!("{share:.0} %: ") } else { String::new() };
-        format!("{share}{}", processor(&part.backend))
-    });
-    parts.reduce(|all, part| format!("{all}\n{part}")).or_else(|| status.backend.as_ref().map(processor))
 }
 
 fn processor(BackendInfo { name, device, threads, .. }: &BackendInfo) -> String {
@@ -267,6 +257,7 @@ mod tests {
     use super::*;
     use crate::app::tests::snapshot_of;
     use crate::film::ErrorEstimate;
+    use crate::progressive::Status;
     use std::sync::Arc;
     use std::time::Duration;
 

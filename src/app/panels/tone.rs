@@ -2,8 +2,9 @@
 
 use crate::app::commands::{Command, PanelContext};
 use crate::app::model::{Show, Tone, ViewState};
+use crate::app::toolkit::menu::item;
 use crate::app::toolkit::number::{Number, compact};
-use crate::app::toolkit::widgets::{About, Header, add_command, command_entry, fold, list};
+use crate::app::toolkit::widgets::{About, add_command, fold, list};
 use eframe::egui::{Checkbox, Ui};
 
 /// Draws the view and its brightness.
@@ -15,11 +16,10 @@ pub fn ui(ui: &mut Ui, view: &mut ViewState, cx: &PanelContext) {
         let sign = if view.tone.exposure > 0.0 { "+" } else { "" };
         summary.push(format!("{sign}{} stops", compact(view.tone.exposure)));
     }
-    let header = Header { title: "View", summary: &summary.join(", "), ..Header::default() };
-    fold(ui, header, false, |ui| {
+    fold(ui, ["View", &summary.join(", ")], false, |ui| {
         let about = About::new("Show", "What is shown; files are saved as Picture");
         list(ui, about, show.name(), |ui| {
-            Show::ALL.iter().for_each(|show| command_entry(ui, cx, Command::Show(*show), show.name()));
+            Show::ALL.iter().for_each(|show| _ = item(ui, cx, Command::Show(*show)));
         });
         let mut is_denoised = view.is_denoised;
         let denoise = Checkbox::new(&mut is_denoised, Command::Denoise.name());

@@ -1,7 +1,7 @@
 //! The menus, read from the table of commands.
 
 use super::widgets::{named, tip};
-use crate::app::commands::{Command, MENUS, PanelContext, ROWS};
+use crate::app::commands::{Command, MENUS, PanelContext, ROWS, Snapshot};
 use eframe::egui::accesskit::Toggled;
 use eframe::egui::containers::menu::SubMenuButton;
 use eframe::egui::{Atom, Button, IdSalt, Response, RichText, Stroke, Ui, vec2};
@@ -70,22 +70,10 @@ fn submenu(ui: &mut Ui, name: &str, content: impl FnOnce(&mut Ui)) {
 
 /// A menu entry for a command.
 pub fn item(ui: &mut Ui, cx: &PanelContext, command: Command) -> Response {
-    let (reason, name) = (cx.disabled_reason(command), cx.name(command));
-    let response = ui
-        .scope(|ui| {
-            ui.spacing_mut().button_padding = vec2(4.0, 4.0);
-            ui.add_enabled(reason.is_none(), line(ui, command, (gutter(), name.as_str()), false))
-        })
-        .inner
-        .accessible_name(name.as_str());
-    if cx.is_on(command) {
-        let middle = response.rect.left_center() + vec2(12.0, 0.0);
-        let tick = [[-4.0, 0.0], [-1.0, 3.0], [4.5, -4.0]].map(|[x, y]| middle + vec2(x, y));
-        ui.painter().line(tick.to_vec(), Stroke::new(1.5, ui.visuals().strong_text_color()));
-    }
-    name_state(&response, cx.switch(command));
+    let response = entry(ui, cx, command, &cx.name(command), false);
     let path = cx.path(command).map(|path| path.display().to_string());
-    let response = tip(ui, response, path.as_deref().unwrap_or(command.help()), reason.as_deref());
+    let help = path.as_deref().unwrap_or(command.help());
+    let response = tip(ui, response, help, cx.disabled_reason(command).as_deref());
     if response.clicked() {
         cx.send(command);
         ui.close();
@@ -93,23 +81,26 @@ pub fn item(ui: &mut Ui, cx: &PanelContext, command: Command) -> Response {
     response
 }
 
-/// Tells assistive technology whether a switch is on.
-pub fn name_state(response: &Response, switch: Option<bool>) {
-    if let Some(is_on) = switch {
-        response.ctx.accesskit_node_builder(response.id, |node| node.set_toggled(Toggled::from(is_on)));
-    }
-}
-
-/// A line with a command's name, and its keys at the right.
-pub fn line<'a>(
-    ui: &Ui,
-    command: Command,
-    name: impl eframe::egui::IntoAtoms<'a>,
-    is_chosen: bool,
-) -> Button<'a> {
-    let button = Button::selectable(is_chosen, name).min_size(vec2(ui.available_width(), 24.0));
-    match command.keys(ui.ctx()) {
+/// A line with a command's name, a tick if it is on, and its keys at the right.
+pub fn entry(ui: &mut Ui, snapshot: &Snapshot, command: Command, name: &str, is_chosen: bool) -> Response {
+    let button = Button::selectable(is_chosen, (gutter(), name)).min_size(vec2(ui.available_width(), 24.0));
+    let button = match command.keys(ui.ctx()) {
         Some(keys) => button.shortcut_text(RichText::new(keys).small()),
         None => button.right_text(""),
+    };
+    let is_usable = snapshot.disabled_reason(command).is_none();
+    let scope = ui.scope(|ui| {
+        ui.spacing_mut().button_padding = vec2(4.0, 4.0);
+        ui.add_enabled(is_usable, button)
+    });
+    let response = scope.inner.accessible_name(name);
+    if snapshot.is_on(command) {
+        let middle = response.rect.left_center() + vec2(12.0, 0.0);
+        let tick = [[-4.0, 0.0], [-1.0, 3.0], [4.5, -4.0]].map(|[x, y]| middle + vec2(x, y));
+        ui.painter().line(tick.to_vec(), Stroke::new(1.5, ui.visuals().strong_text_color()));
     }
+    if let Some(is_on) = snapshot.switch(command) {
+        response.ctx.accesskit_node_builder(response.id, |node| node.set_toggled(Toggled::from(is_on)));
+    }
+    response
 }

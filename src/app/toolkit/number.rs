@@ -3,6 +3,7 @@
 use super::theme;
 use super::widgets::{About, FIELD, above, named, row, show_tip, tip};
 use crate::measure::grouped;
+use crate::numbers::rounded;
 use eframe::egui::{
     DragValue, Key, Response, Slider, SliderClamping, Stroke, StrokeKind, Ui, response::Flags,
 };
@@ -184,14 +185,9 @@ pub fn vector(ui: &mut Ui, about: About<'_>, value: &mut DVec3, limits: RangeInc
     });
 }
 
-/// The bytes of a colour as the picture shows it in white light.
-pub fn shown_albedo(albedo: DVec3) -> [u8; 3] {
-    albedo.to_array().map(|n| (255.0 * n.clamp(0.0, 1.0).sqrt()).round() as u8)
-}
-
-/// A colour to pick.
+/// A colour to pick, as the picture shows it in white light.
 pub fn colour(ui: &mut Ui, about: About<'_>, albedo: &mut DVec3) {
-    let shown = shown_albedo(*albedo);
+    let shown = albedo.to_array().map(|n| (255.0 * n.clamp(0.0, 1.0).sqrt()).round() as u8);
     row(ui, about, |ui| {
         ui.spacing_mut().interact_size.x = FIELD;
         let mut picked = shown;
@@ -227,13 +223,6 @@ pub fn compact(n: f64) -> String {
 
 fn with_minus(text: &str) -> String {
     text.replace('-', "\u{2212}")
-}
-
-/// A number rounded to `digits` digits of `scale`.
-pub fn rounded(n: f64, scale: f64, digits: i32) -> f64 {
-    let step = 10_f64.powi(scale.log10().floor().clamp(-300.0, 300.0) as i32 + 1 - digits);
-    let rounded = (n / step).round() * step;
-    if rounded.is_finite() { rounded } else { n }
 }
 
 /// A number of samples, in words.

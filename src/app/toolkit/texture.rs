@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 /// A picture, and its texture once it was drawn.
 pub struct Texture {
-    image: Arc<ColorImage>,
+    pub image: Arc<ColorImage>,
     handle: RefCell<Option<(TextureHandle, TextureOptions)>>,
     /// The texture still has an earlier picture.
     is_stale: Cell<bool>,
@@ -23,16 +23,6 @@ impl Texture {
     /// Pixels across and down.
     pub fn size(&self) -> [u32; 2] {
         self.image.size.map(|side| side as u32)
-    }
-
-    /// The colour of a pixel, column and row from the upper left.
-    pub fn colour(&self, [x, y]: [u32; 2]) -> Option<[u8; 3]> {
-        let [width, height] = self.image.size;
-        let (x, y) = (x as usize, y as usize);
-        (x < width && y < height).then(|| {
-            let [red, green, blue, _] = self.image[(x, y)].to_array();
-            [red, green, blue]
-        })
     }
 
     /// The texture for drawing, with square or smoothed pixels.
@@ -67,14 +57,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_pixel_has_its_colour_and_a_new_picture_the_same_texture() {
+    fn a_new_picture_has_the_same_texture() {
         let context = Context::default();
         let first = Texture::new([2, 2], &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], None);
-        assert_eq!(
-            [[0, 0], [1, 0], [0, 1]].map(|at| first.colour(at)),
-            [[1, 2, 3], [4, 5, 6], [7, 8, 9]].map(Some)
-        );
-        assert_eq!([[2, 0], [0, 2]].map(|at| first.colour(at)), [None; 2]);
         let (square, smooth) = (TextureOptions::NEAREST, TextureOptions::LINEAR);
         let id = first.id(&context, square);
         let known = |id| context.tex_manager().read().meta(id).map(|meta| (meta.size, meta.options));
@@ -107,7 +92,6 @@ mod tests {
         let [width, height] = size.unwrap();
         assert!(width <= limit as usize && width > limit as usize / 2 && height == 2, "{width}");
         assert_eq!(wide.size(), [3 * limit + 1, 2]);
-        assert_eq!(wide.colour([3 * limit, 1]).unwrap()[0], rgb8[rgb8.len() - 1], "its numbers are there");
         context.tex_manager().write().take_delta().clear();
     }
 }

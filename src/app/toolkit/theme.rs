@@ -1,6 +1,6 @@
 //! Colours, fonts and distances: subdued greys, and one accent colour, the blue of the book's sky.
 
-use eframe::egui::style::{HandleShape, ScrollStyle, Spacing};
+use eframe::egui::style::{ScrollStyle, Spacing};
 use eframe::egui::{
     self, Color32, Context, CornerRadius, FontId, Frame, Margin, Shadow, Stroke, Style, TextStyle, Ui,
     Visuals, vec2,
@@ -101,12 +101,9 @@ fn dress(style: &mut Style, is_dark: bool) {
         menu_margin: Margin::same(4),
         menu_spacing: 4.0,
         menu_width: 248.0,
-        indent: 16.0,
-        slider_width: 200.0,
         slider_rail_height: 4.0,
         combo_width: 112.0,
         combo_height: 320.0,
-        text_edit_width: 200.0,
         icon_width: 16.0,
         icon_width_inner: 10.0,
         icon_spacing: 8.0,
@@ -151,11 +148,7 @@ fn visuals(is_dark: bool) -> Visuals {
     visuals.popup_shadow = Shadow { offset: [0, 4], blur: 14, spread: 0, color };
     visuals.window_shadow = visuals.popup_shadow;
     visuals.slider_trailing_fill = true;
-    visuals.handle_shape = HandleShape::Circle;
     visuals.disabled_alpha = 0.45;
-    visuals.collapsing_header_frame = false;
-    visuals.indent_has_left_vline = false;
-    visuals.button_frame = true;
     let widgets = &mut visuals.widgets;
     for (widget, fill, text) in [
         (&mut widgets.noninteractive, colours.panel, colours.text),

@@ -16,7 +16,7 @@ pub const FIELD: f32 = 64.0;
 const SPACING: f32 = 8.0;
 
 /// Height of a row of tabs, points.
-pub const TABS: f32 = 40.0;
+const TABS: f32 = 40.0;
 
 /// A control's name, its tooltip, and the reason if it is disabled.
 #[derive(Clone, Copy)]
@@ -245,99 +245,60 @@ pub fn entry(ui: &mut Ui, is_on: bool, about: About<'_>) -> bool {
     is_chosen
 }
 
-/// An entry for a command, under this name.
-pub fn command_entry(ui: &mut Ui, cx: &PanelContext, command: Command, name: &str) {
-    let reason = cx.disabled_reason(command);
-    if entry(ui, cx.is_on(command), About::new(name, command.help()).disabled_if(reason.as_deref())) {
-        cx.send(command);
-    }
-}
-
-/// A check box.
-pub fn check(ui: &mut Ui, about: About<'_>, value: &mut bool) -> Response {
-    let response = ui.add_enabled(about.disabled_reason.is_none(), egui::Checkbox::new(value, about.name));
-    tip(ui, response, about.help, about.disabled_reason)
-}
-
-/// The parts of a group's header.
-#[derive(Clone, Copy, Default)]
-pub struct Header<'a> {
-    pub title: &'a str,
-    /// The group's values, shown while it is folded and as they were.
-    pub summary: &'a str,
-    /// The name of the button that resets the group, if something in it was changed.
-    pub reset: Option<&'a str>,
-    /// It belongs to the group above.
-    pub is_minor: bool,
-}
-
-/// A group of controls that is always open. Returns whether the button that resets it was clicked.
-pub fn group(ui: &mut Ui, header: Header<'_>, body: impl FnOnce(&mut Ui)) -> bool {
+/// A group of controls that folds when its header is clicked. The header has the group's values at the right.
+pub fn fold(ui: &mut Ui, [title, summary]: [&str; 2], is_open: bool, body: impl FnOnce(&mut Ui)) {
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 32.0), Sense::hover());
-        let is_reset = header_row(ui, rect, header, true);
-        ui.spacing_mut().item_spacing.y = SPACING;
-        ui.scope(body);
-        is_reset
-    })
-    .inner
-}
-
-/// A group of controls that folds when its header is clicked. Returns whether the button that resets it was clicked.
-pub fn fold(ui: &mut Ui, header: Header<'_>, is_open: bool, body: impl FnOnce(&mut Ui)) -> bool {
-    ui.scope(|ui| {
-        ui.spacing_mut().item_spacing.y = 0.0;
-        let id = ui.make_persistent_id(header.title);
+        let id = ui.make_persistent_id((title, is_open));
         let mut state = CollapsingState::load_with_default_open(ui.ctx(), id, is_open);
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 32.0), Sense::click());
         let words = if state.is_open() { "open" } else { "folded" };
-        let name = format!("{}, {words}", header.title);
+        let name = format!("{title}, {words}");
         response.widget_info(|| WidgetInfo::labeled(Role::DisclosureTriangle, true, &name));
-        if take_focus(&response, header.title) {
+        if take_focus(&response, title) {
             state.set_open(true);
         } else if response.clicked() {
             state.toggle(ui);
         }
         let icon = Rect::from_center_size(pos2(rect.left() + 4.0, rect.center().y), vec2(10.0, 10.0));
         paint_default_icon(ui, state.openness(ui.ctx()), &response.clone().with_new_rect(icon));
-        let is_reset = header_row(ui, rect.with_min_x(rect.left() + 16.0), header, state.is_open());
+        let header = UiBuilder::new().max_rect(rect.with_min_x(rect.left() + 16.0));
+        let mut header = ui.new_child(header.layout(Layout::left_to_right(Align::Center)));
+        let sides = Sides::new().height(rect.height()).spacing(4.0).shrink_left().truncate();
+        sides.show(&mut header, |ui| ui.label(RichText::new(title).strong()), |ui| small(ui, summary));
         ui.spacing_mut().item_spacing.y = SPACING;
         state.show_body_unindented(ui, |ui| {
             body(ui);
             ui.add_space(4.0);
         });
-        is_reset
-    })
-    .inner
+    });
 }
 
-fn header_row(ui: &mut Ui, rect: Rect, header: Header<'_>, is_open: bool) -> bool {
-    let mut is_reset = false;
-    let mut row = ui.new_child(UiBuilder::new().max_rect(rect).layout(Layout::left_to_right(Align::Center)));
-    row.spacing_mut().item_spacing.x = 4.0;
-    Sides::new().height(rect.height()).spacing(4.0).shrink_left().truncate().show(
-        &mut row,
-        |ui| {
-            let title = RichText::new(header.title);
-            ui.label(if header.is_minor { title } else { title.strong() })
-        },
-        |ui| {
-            if let Some(name) = header.reset {
-                let response = ui.link(RichText::new("Reset").small());
-                named(&response, name);
-                is_reset = tip(ui, response, "Back to the stage\u{2019}s own values", None).clicked();
+/// A row of tabs over a line, with something at its right end. Returns the one to show from now on.
+pub fn tabs<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    tabs: &[(T, &str)],
+    shown: T,
+    right: impl FnOnce(&mut Ui),
+) -> T {
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let mut chosen = shown;
+    let left = |ui: &mut Ui| {
+        ui.spacing_mut().item_spacing.x = 16.0;
+        for (each, name) in tabs {
+            if tab(ui, name, *each == shown).clicked() {
+                chosen = *each;
             }
-            if !is_open && !header.summary.is_empty() && header.reset.is_none() {
-                small(ui, header.summary);
-            }
-        },
-    );
-    is_reset
+        }
+    };
+    egui::Frame::new().inner_margin(egui::Margin::symmetric(16, 0)).show(ui, |ui| {
+        Sides::new().height(TABS).shrink_left().show(ui, left, right);
+    });
+    panel_line(ui);
+    chosen
 }
 
-/// A tab of a panel or of the dock.
-pub fn tab(ui: &mut Ui, name: &str, is_on: bool) -> Response {
+fn tab(ui: &mut Ui, name: &str, is_on: bool) -> Response {
     let colours = theme::colours(ui);
     let text = RichText::new(name).color(if is_on { colours.strong } else { colours.weak });
     ui.scope(|ui| {

@@ -1,12 +1,12 @@
 //! A picture of another program: what is wrong with it, and where.
 
 use crate::app::commands::{Command, PanelContext};
-use crate::app::model::{Kept, Partner, Remembered, Tab};
+use crate::app::model::{Kept, Partner, Remembered, Tab, middle_of};
 use crate::app::panels::compare;
 use crate::app::panels::right::{foot, scrolling};
 use crate::app::panels::stage_panel::paragraph;
 use crate::app::toolkit::widgets::{
-    About, Header, command_button, entry, fold, hint, list, panel_line, primary, small, tip,
+    About, command_button, entry, fold, hint, list, panel_line, primary, small, tip,
 };
 use crate::app::toolkit::{Answers, caught, theme};
 use crate::comparison::check::{Answer, AnswerKind, Damage, Finding, Mine, POLL_INTERVAL, Watched, judge};
@@ -14,8 +14,8 @@ use crate::stages::{Stage, Transfer};
 use eframe::egui::text::LayoutJob;
 use eframe::egui::{self, Align, FontSelection, Label, RichText, Ui};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{Builder, sleep};
 
 /// The finding for one state of the file.
@@ -42,6 +42,8 @@ impl Checked {
 }
 
 enum News {
+    /// What is being tried; `None` between two checks.
+    Trying(Option<String>),
     Read(Arc<Kept>),
     Judged(Box<Checked>),
 }
@@ -54,7 +56,7 @@ pub struct Check {
     /// The stage that the user has chosen for it.
     chosen: Option<&'static Stage>,
     /// What is being tried; `None` between two checks.
-    trying: Arc<Mutex<Option<String>>>,
+    trying: Option<String>,
     pub shown: Option<Checked>,
     /// The picture of the file as it is now.
     pub mine: Option<Arc<Kept>>,
@@ -77,14 +79,10 @@ impl Check {
         self.close();
         (self.path, self.chosen, self.has_news) = (Some(path.to_owned()), stage, true);
         let (answer, mut watched) = (self.answers.promise(context), Watched::new(path));
-        self.trying = Arc::new(Mutex::new(Some("reading it".to_owned())));
-        let (trying, window, name, stop) =
-            (Arc::clone(&self.trying), context.clone(), self.name(), Arc::clone(&self.stop));
-        let say = move |what| {
-            *trying.lock().unwrap_or_else(PoisonError::into_inner) = what;
-            window.request_repaint();
-        };
+        self.trying = Some("reading it".to_owned());
+        let (name, stop) = (self.name(), Arc::clone(&self.stop));
         let watch = move || {
+            let say = |what| answer.give(Ok(News::Trying(what)));
             while answer.is_wanted() {
                 let found = caught(|| {
                     let found = watched.judged(|mine| {
@@ -120,8 +118,12 @@ impl Check {
         }
         let mut is_answered = false;
         while let Some(outcome) = self.answers.take() {
-            is_answered = true;
+            is_answered |= !matches!(outcome, Ok(News::Trying(_)));
             let checked = match outcome {
+                Ok(News::Trying(what)) => {
+                    self.trying = what;
+                    continue;
+                }
                 Ok(News::Read(mine)) => {
                     (self.mine, self.is_old) = (Some(mine), true);
                     continue;
@@ -147,7 +149,7 @@ impl Check {
             remembered.mine_stage = self.chosen.map(|stage| stage.id.to_owned());
         }
         if std::mem::take(&mut self.has_news) {
-            (remembered.has_info, remembered.tab) = (true, Tab::Check);
+            (remembered.hides_info, remembered.tab) = (false, Tab::Check);
         }
         is_answered
     }
@@ -170,7 +172,7 @@ impl Check {
         let next = self.place.map_or(0, |place| (place + 1) % self.places().len().max(1));
         let (at, size) = (*self.places().get(next)?, self.found()?.1.size());
         self.place = Some(next);
-        let [x, y] = [0, 1].map(|axis| (f64::from(at[axis]) + 0.5) / f64::from(size[axis]));
+        let [x, y] = middle_of(at, size);
         Some([x - REACH, y - REACH, x + REACH, y + REACH])
     }
 
@@ -228,8 +230,7 @@ impl Check {
 
     /// What is being tried, also when the picture is checked again.
     fn progress(&self, ui: &mut Ui) {
-        let trying = self.trying.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        let Some(trying) = trying else { return };
+        let Some(trying) = &self.trying else { return };
         let name = self.name();
         let what = self.chosen.map_or("every section", |stage| stage.section);
         let words = match &self.shown {
@@ -288,7 +289,7 @@ impl Checked {
         if !answer.evidence.is_empty() {
             ui.add_space(4.0);
             panel_line(ui);
-            fold(ui, Header { title: "Figures", ..Header::default() }, false, |ui| {
+            fold(ui, ["Figures", ""], false, |ui| {
                 for line in &answer.evidence {
                     hint(ui, &format!("{line}."));
                 }

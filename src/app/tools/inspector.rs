@@ -3,17 +3,18 @@
 
 use crate::app::commands::Snapshot;
 use crate::app::model::spheres::MANY;
-use crate::app::model::{Document, Mode, Partner, ViewState, at_other, kind_word};
+use crate::app::model::{Document, Mode, Model, Partner, at_other, kind_word, middle_of};
 use crate::app::toolkit::number::compact;
 use crate::app::toolkit::widgets::{hint, tip};
 use crate::app::toolkit::{Query, theme};
-use crate::app::tracing::second::{Other, OtherId};
+use crate::app::tracing::second::OtherId;
 use crate::app::tracing::subject::{PictureId, Subject};
 use crate::backends::layers::Layer;
 use crate::film::{Film, to_byte};
 use crate::scene::Scene;
 use crate::stages::Transfer;
 use eframe::egui::{self, Align, Color32, Layout, Rect, RichText, Sense, TextStyle, Ui, UiBuilder, vec2};
+use std::sync::mpsc::channel;
 
 /// Height of a row and distance of the columns of numbers, sizes of the font.
 const ROW: f32 = 4.0 / 3.0;
@@ -54,22 +55,17 @@ pub struct Readout {
     pub compared: Option<[Pixel; 2]>,
 }
 
-/// Column and row, of a picture of this run: that of the traced one, or a partner and its run.
-type Of<Run> = ([u32; 2], Run);
-
-/// By pixel, film and number of samples.
-type Mine = Query<([u32; 2], PictureId, u64), (Of<u64>, Pixel)>;
-
-/// None where the other picture has no pixel.
-type Theirs = Query<([u32; 2], OtherId), (Of<(Partner, u64)>, Option<Pixel>)>;
+/// A pixel of the picture, the film and number of samples, and the other picture.
+type Key = ([u32; 2], PictureId, u64, Option<OtherId>);
 
 /// The pixel under the pointer and what is known about it.
 #[derive(Default)]
 pub struct Inspector {
     pub hovered: Option<[u32; 2]>,
-    mine: Mine,
-    theirs: Theirs,
-    readout: Option<Readout>,
+    /// The pixel of the other picture and that of this one.
+    query: Query<Key, [Option<Pixel>; 2]>,
+    /// The last ones that were found, which stay until there are others, and the place.
+    known: Option<([u32; 2], [Option<Pixel>; 2])>,
 }
 
 impl Inspector {
@@ -79,8 +75,12 @@ impl Inspector {
     }
 
     /// What is known about the pixel.
-    pub fn readout(&self) -> Option<&Readout> {
-        self.readout.as_ref()
+    pub fn readout(&self, model: &Model) -> Option<Readout> {
+        let (view, (at, [theirs, mine])) = (&model.view, self.known.as_ref()?);
+        let is_other = view.is_other(middle_of(*at, model.document.size())[0]);
+        let compared = theirs.clone().zip(mine.clone()).filter(|_| view.mode().is_some());
+        let pixel = if is_other { theirs } else { mine }.clone()?;
+        Some(Readout { pixel, is_other, compared: compared.map(|(theirs, mine)| [theirs, mine]) })
     }
 
     /// Forgets the pixel, because the picture has changed.
@@ -88,57 +88,32 @@ impl Inspector {
         *self = Inspector::default();
     }
 
-    /// Takes the films' answers and queries them again if there may be news. If a film is gone or has no samples, the last
-    /// known pixel stays.
-    pub fn follow(
-        &mut self,
-        subject: &Subject<'_>,
-        other: Option<Other<'_>>,
-        view: &ViewState,
-        context: &egui::Context,
-    ) {
-        self.mine.follow();
-        self.theirs.follow();
-        let Some(at) = self.hovered else { return };
-        let (document, main) = (subject.document, &subject.tracing.main);
-        let (size, run) = (document.size(), main.status().run);
-        self.join((at, run), other.map(|other| (at, (other.id().0, other.id().1))), view, size);
-        if let Some(other) = other
-            && let Some(answer) = self.theirs.ask(context, (at, other.id()))
+    /// Takes the films' answers and asks again if there may be news.
+    pub fn follow(&mut self, subject: &Subject<'_>, context: &egui::Context) {
+        if self.query.follow()
+            && let Some((pixels, (at, ..))) = self.query.answer.take().zip(self.query.asked)
+            && pixels.iter().any(Option::is_some)
         {
-            let (transfer, id) = (other.transfer(), other.id());
+            self.known = Some((at, pixels));
+        }
+        let Some(at) = self.hovered else { return };
+        let (document, main) = (subject.document(), &subject.tracing.main);
+        let other = subject.tracing.other(subject.model);
+        let key = (at, subject.id(), main.shown_samples(), other.map(|other| other.id()));
+        let Some(answer) = self.query.ask(context, key) else { return };
+        let (size, (give_theirs, theirs), (give_mine, mine)) = (document.size(), channel(), channel());
+        if main.is_full(document) {
+            let transfer = document.rules().transfer;
+            subject.inspect(move |film| _ = give_mine.send(Pixel::of(film, at, transfer)));
+        }
+        if let Some(other) = other {
+            let transfer = other.transfer();
             other.inspect(move |film| {
                 let there = at_other(at, size, [film.width(), film.height()]);
-                let pixel = there.and_then(|there| Pixel::of(film, there, transfer));
-                answer.give(Ok(((at, (id.0, id.1)), pixel)));
+                let _ = give_theirs.send(there.and_then(|there| Pixel::of(film, there, transfer)));
             });
         }
-        if main.is_full(document) {
-            let (key, transfer) = ((at, subject.id(), main.shown_samples()), document.rules().transfer);
-            if let Some(answer) = self.mine.ask(context, key) {
-                subject.inspect(move |film| {
-                    let pixel = Pixel::of(film, at, transfer);
-                    pixel.into_iter().for_each(|pixel| answer.give(Ok(((at, run), pixel))));
-                });
-            }
-        }
-    }
-
-    /// Joins the answers about one place of these pictures. The last known ones stay until both are there.
-    fn join(&mut self, of: Of<u64>, of_other: Option<Of<(Partner, u64)>>, view: &ViewState, size: [u32; 2]) {
-        let mine = self.mine.answer.as_ref().filter(|(about, _)| *about == of);
-        let theirs = self.theirs.answer.as_ref().filter(|(about, _)| Some(*about) == of_other);
-        let is_other = of_other.is_some() && view.is_other((f64::from(of.0[0]) + 0.5) / f64::from(size[0]));
-        let (pixel, compared) = match (mine, theirs) {
-            (Some((_, mine)), None) if of_other.is_none() => (Some(mine.clone()), None),
-            (_, Some((_, theirs))) if is_other && mine.is_none() => (theirs.clone(), None),
-            (Some((_, mine)), Some((_, theirs))) => {
-                let compared = theirs.clone().map(|theirs| [theirs, mine.clone()]);
-                (if is_other { theirs.clone() } else { Some(mine.clone()) }, compared)
-            }
-            _ => return,
-        };
-        self.readout = pixel.map(|pixel| Readout { pixel, is_other, compared });
+        answer.give_from("pixel", move || Ok([theirs, mine].map(|pixel| pixel.recv().ok().flatten())));
     }
 
     /// Draws the numbers; `other` is the document of the other picture, and `layer` the displayed layer and its value.
@@ -152,7 +127,7 @@ impl Inspector {
         // The header and five rows, so that what is above stays where it is.
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.set_min_height(24.0 + 5.0 * ROW * TextStyle::Small.resolve(ui.style()).size);
-        let Some(readout) = &self.readout else {
+        let Some(readout) = self.readout(&snapshot.model) else {
             ui.horizontal(|ui| ui.label(RichText::new("Pixel").strong()));
             hint(ui, "Point at the picture to read its numbers.");
             return;
@@ -165,7 +140,7 @@ impl Inspector {
             mode: view.mode(),
             in_bytes: view.compared(snapshot.document()) == Some(Partner::Mine),
         };
-        table(ui, &rows(readout, &of, layer));
+        table(ui, &rows(&readout, &of, layer));
         ui.add_space(4.0);
     }
 }
@@ -257,14 +232,12 @@ fn table(ui: &mut Ui, rows: &[Row<'_>]) {
 }
 
 /// The name of the surface at a pixel, and how far away it is.
-fn surface(document: &Document, [x, y]: [u32; 2]) -> Option<(String, String)> {
+fn surface(document: &Document, at: [u32; 2]) -> Option<(String, String)> {
     let scene = document.scene();
     if scene.spheres.len() > MANY || document.no_rays().is_some() {
         return None;
     }
-    let [width, height] = document.size();
-    let place = [(f64::from(x) + 0.5) / f64::from(width), (f64::from(y) + 0.5) / f64::from(height)];
-    let Some(pick) = document.pick(&document.camera, place) else {
+    let Some(pick) = document.pick(&document.camera, middle_of(at, document.size())) else {
         return Some(("sky".to_owned(), String::new()));
     };
     let (sphere, material) = names(scene, pick.sphere);

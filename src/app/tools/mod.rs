@@ -7,7 +7,6 @@ pub mod inspector;
 pub mod paths;
 mod quoted;
 
-use crate::app::model::Model;
 use crate::app::tracing::subject::Subject;
 use check::Check;
 use code::Code;
@@ -25,9 +24,9 @@ pub struct Tools {
 
 impl Tools {
     /// Asks background threads for what is to be explained.
-    pub fn follow(&mut self, context: &Context, model: &Model, subject: &Subject<'_>) {
-        self.inspector.follow(subject, subject.tracing.other(model), &model.view, context);
-        self.paths.follow(&model.document, context);
+    pub fn follow(&mut self, context: &Context, subject: &Subject<'_>) {
+        self.inspector.follow(subject, context);
+        self.paths.follow(subject.document(), context);
     }
 
     /// Forgets what belonged to the picture that was shown before.

@@ -5,6 +5,7 @@ use super::Tracing;
 use super::second::{Other, OtherId};
 use super::tracer::Tracer;
 use crate::app::commands::Verdict;
+use crate::app::model::changes::Changed;
 use crate::app::model::{Kept, Model, Partner, Wish};
 use crate::app::toolkit::{Answers, Query};
 use crate::comparison::{Picture, compare};
@@ -33,7 +34,7 @@ pub struct KeptActions {
 impl KeptActions {
     /// Copies the traced film if that was asked for and it has samples. The answer arrives in `copied`. Compares two films
     /// of the same samples once both are done.
-    pub fn follow(&mut self, context: &Context, model: &Model, tracing: &Tracing) {
+    pub fn follow(&mut self, context: &Context, model: &Model, tracing: &Tracing, changed: Changed) {
         self.verdict.follow();
         let document = &model.document;
         let has_samples = tracing.main.has_samples(document);
@@ -44,8 +45,8 @@ impl KeptActions {
                 answer.give_from("keep", move || copy.map(|film| Kept::new(document, film)));
             });
         }
-        if model.view.mode().is_none() || self.asked.open().is_some_and(|asked| *asked != model.view.partner)
-        {
+        let is_other = |asked: &Partner| model.view.mode().is_none() || *asked != model.view.partner;
+        if changed.partner && self.asked.open().is_some_and(is_other) {
             self.asked = Wish::default();
         }
         if !has_samples {

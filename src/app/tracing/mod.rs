@@ -76,11 +76,6 @@ impl Tracing {
         self.tracers().for_each(|tracer| tracer.progressive.resume());
     }
 
-    /// Throws the samples away and begins anew.
-    pub fn restart(&mut self) {
-        self.tracers_mut().for_each(|tracer| tracer.started = None);
-    }
-
     /// The status of the render of the other picture, if it has one of its own.
     pub fn other_status(&self, model: &Model) -> Option<Arc<Status>> {
         match self.other(model)? {

@@ -4,7 +4,7 @@ use super::tracer::{Tracer, Want};
 use crate::app::model::{CheckedScene, Document, Kept, Mode, Model, Origin, Partner};
 use crate::app::toolkit::{Query, Texture};
 use crate::film::Film;
-use crate::progressive::{Phase, ReferenceMeans, View};
+use crate::progressive::{Phase, ReferenceMeans};
 use crate::stages::Transfer;
 use eframe::egui::Context;
 use std::sync::Arc;
@@ -66,12 +66,6 @@ impl<'a> Other<'a> {
 /// The partner that was traced last, the origin and the scene of this picture then, and the origin of the other one.
 type Of = (Partner, Arc<Origin>, Arc<CheckedScene>, Arc<Origin>);
 
-/// A picture that was resolved from the other film, in a view.
-type Resolved = (OtherId, View, Texture);
-
-/// Such a picture before it is a texture: its size, and three bytes per pixel.
-type Bytes = (OtherId, View, [u32; 2], Vec<u8>);
-
 /// The other picture of a comparison.
 #[derive(Default)]
 pub struct Second {
@@ -80,9 +74,8 @@ pub struct Second {
     of: Option<Of>,
     /// Its light, to subtract.
     means: Query<OtherId, (OtherId, Arc<ReferenceMeans>)>,
-    /// The picture of a film that is not traced for the comparison.
-    resolved: Option<Resolved>,
-    resolving: Query<(OtherId, View), Bytes>,
+    /// The picture of a film that is not traced for the comparison, by its exposure.
+    resolved: Query<(OtherId, f64), (Partner, Texture)>,
 }
 
 impl Second {
@@ -96,8 +89,8 @@ impl Second {
         match other {
             Other::Traced(_, tracer, _) => tracer.shown().map(|shown| (&shown.texture, shown.divisor > 1)),
             Other::Kept(_) => {
-                let found = self.resolved.as_ref().filter(|(id, ..)| id.0 == other.id().0);
-                found.map(|(.., texture)| (texture, false))
+                let found = self.resolved.answer.as_ref().filter(|(of, _)| *of == other.id().0);
+                found.map(|(_, texture)| (texture, false))
             }
         }
     }
@@ -119,33 +112,22 @@ impl Second {
         let partner = model.view.compared(want.document);
         let is_there = self.trace(context, partner, model, want);
         self.means.follow();
-        if self.resolving.follow()
-            && let Some((id, view, size, rgb8)) = self.resolving.answer.take()
-        {
-            let earlier = self.resolved.take().map(|(.., texture)| texture);
-            self.resolved = Some((id, view, Texture::new(size, &rgb8, earlier)));
-        }
-        if let Some(other) = other(self.tracer.as_ref(), self.of.as_ref(), model) {
-            let (id, view) = (other.id(), model.view.tone.of_picture());
-            let is_kept = matches!(other, Other::Kept(_));
-            let is_known = |(of, in_view, _): &Resolved| *of == id && in_view.is_same(&view);
-            if model.view.mode() == Some(Mode::Difference)
-                && other.is_ready()
-                && !is_kept
-                && let Some(answer) = self.means.ask(context, id)
-            {
-                other.inspect(move |film| answer.give(Ok((id, Arc::new(ReferenceMeans::of(film))))));
-            }
-            if is_kept
-                && !self.resolved.as_ref().is_some_and(is_known)
-                && let Some(answer) = self.resolving.ask(context, (id, view.clone()))
-            {
+        self.resolved.follow();
+        let Some(other) = other(self.tracer.as_ref(), self.of.as_ref(), model) else { return is_there };
+        let (id, tone) = (other.id(), model.view.tone);
+        if matches!(other, Other::Kept(_)) {
+            if let Some(answer) = self.resolved.ask(context, (id, tone.exposure)) {
                 let transfer = other.transfer();
                 other.inspect(move |film| {
-                    let rgb8 = view.resolve(film, transfer);
-                    answer.give(Ok((id, view, [film.width(), film.height()], rgb8)));
+                    let rgb8 = tone.of_picture().resolve(film, transfer);
+                    answer.give(Ok((id.0, Texture::new([film.width(), film.height()], &rgb8, None))));
                 });
             }
+        } else if model.view.mode() == Some(Mode::Difference)
+            && other.is_ready()
+            && let Some(answer) = self.means.ask(context, id)
+        {
+            other.inspect(move |film| answer.give(Ok((id, Arc::new(ReferenceMeans::of(film))))));
         }
         is_there
     }

@@ -2,7 +2,7 @@
 //! the samples of the one before, and at the end of a render or a pause. What is saved or copied has all samples.
 
 use super::Tracing;
-use crate::app::model::{Document, Found, ViewState};
+use crate::app::model::{Document, Found, Model};
 use crate::app::toolkit::Answers;
 use crate::denoise::{Denoised, Halves, denoise};
 use crate::film::Film;
@@ -25,31 +25,31 @@ pub type PictureId = (u64, Option<u64>);
 /// The traced film, or its denoised picture.
 #[derive(Clone, Copy)]
 pub struct Subject<'a> {
-    pub document: &'a Document,
+    pub model: &'a Model,
     pub tracing: &'a Tracing,
-    pub denoised: Option<&'a Arc<Denoised>>,
-    /// The user wants it denoised.
-    pub is_denoised: bool,
 }
 
 impl<'a> Subject<'a> {
-    pub fn new(view: &'a ViewState, document: &'a Document, tracing: &'a Tracing) -> Self {
-        let denoised = view.denoised_of(tracing.main.status().run);
-        Subject { document, tracing, denoised, is_denoised: view.shows_denoised() }
+    pub fn document(&self) -> &'a Document {
+        &self.model.document
+    }
+
+    fn denoised(&self) -> Option<&'a Arc<Denoised>> {
+        self.model.view.denoised_of(self.tracing.main.status().run)
     }
 
     pub fn id(&self) -> PictureId {
-        (self.tracing.main.status().run, self.denoised.map(|denoised| denoised.film.sample_count()))
+        (self.tracing.main.status().run, self.denoised().map(|denoised| denoised.film.sample_count()))
     }
 
     /// Whether it is the film of its document at full size, and has samples.
     pub fn has_samples(&self) -> bool {
-        self.tracing.main.has_samples(self.document)
+        self.tracing.main.has_samples(self.document())
     }
 
     /// Runs `look` with the film or its denoised picture on another thread.
     pub fn inspect(&self, look: impl FnOnce(&Film) + Send + 'static) {
-        match self.denoised.map(Arc::clone) {
+        match self.denoised().map(Arc::clone) {
             Some(denoised) => self.tracing.main.inspect(move |_| look(&denoised.film)),
             None => self.tracing.main.inspect(look),
         }
@@ -69,8 +69,8 @@ pub struct Denoising {
 
 impl Denoising {
     /// Asks for the film's denoised picture if it is time, and returns what was found since the last call.
-    pub fn follow(&mut self, context: &Context, subject: &Subject<'_>, is_on: bool) -> Option<Found> {
-        let status = subject.tracing.main.status();
+    pub fn follow(&mut self, context: &Context, subject: &Subject<'_>) -> Option<Found> {
+        let (status, is_on) = (subject.tracing.main.status(), subject.model.view.is_denoised);
         let (run, samples) = (status.run, status.samples_per_pixel);
         if let Some((_, stop)) = self.working.as_ref().filter(|(of, _)| !is_on || *of != run) {
             stop.store(true, Ordering::Relaxed);
@@ -94,7 +94,7 @@ impl Denoising {
         let is_resting = known > 0 && self.rest_until.is_some_and(|until| Instant::now() < until);
         // As soon as the raw picture is better than the one on the screen, that one has to go.
         let is_outdone = || {
-            let errors = status.error.zip(subject.denoised);
+            let errors = status.error.zip(subject.denoised());
             errors.is_some_and(|(raw, denoised)| raw.rmse < denoised.error.rmse())
         };
         let is_due =

@@ -1,7 +1,7 @@
 //! The selected sphere in the picture: its outline, its handle, and drags of either.
 
 use super::placement::{place_at, point_at};
-use crate::app::commands::{PanelContext, Snapshot};
+use crate::app::commands::{Command, PanelContext, Snapshot};
 use crate::app::model::spheres::grip::{Grip, Held};
 use crate::app::model::spheres::silhouette::Outline;
 use crate::app::model::spheres::{MANY, Selected};
@@ -48,7 +48,7 @@ impl Selection {
             let body = held.dragged(&document.camera, document.aspect(), place_at(rect, at));
             let is_changed = body != selected.body;
             if is_changed {
-                cx.edit(Edit::Change(selected.sphere, body));
+                cx.send(Command::Edit(Edit::Change(selected.sphere, body)));
             }
             return (true, is_changed);
         }

@@ -1,10 +1,10 @@
 //! Where everything is drawn in a frame: panels, the picture, what lies over it, and dialogs.
 
 use super::Window;
-use crate::app::commands::{Command, PanelContext, Requests};
+use crate::app::commands::{Command, PanelContext};
 use crate::app::model::{Mode, Model, Partner, Remembered, Tab};
 use crate::app::panels::{bar, compare, controls, present, right, stage_panel, status, tone};
-use crate::app::toolkit::theme;
+use crate::app::toolkit::{theme, widgets};
 use crate::app::tools::inspector::Inspector;
 use crate::app::tools::{Tools, dock};
 use crate::app::tracing::Tracing;
@@ -44,11 +44,7 @@ impl Window {
         if cx.model.presentation.is_some_and(|presentation| presentation.is_blank) {
             present::blank(ui.ctx());
         }
-        let Requests { commands, edits } = cx.requests.into_inner();
-        if !edits.is_empty() {
-            self.edit(&edits);
-        }
-        self.commands.extend(commands);
+        self.commands.extend(cx.requests.into_inner());
     }
 
     /// The panels around the picture.
@@ -61,25 +57,26 @@ impl Window {
         bar::ui(ui, cx);
         status::ui(ui, cx, tracing.sizer.offer);
         let mut tabs = Vec::new();
-        if has.has_info {
+        if !has.hides_info {
             tabs.extend([Tab::Stage, Tab::Code]);
             tabs.extend(tools.check.is_open().then_some(Tab::Check));
         }
-        if has.has_controls && is_narrow {
+        if !has.hides_controls && is_narrow {
             tabs.push(Tab::Controls);
         }
         let wanted = tabs.iter().find(|tab| **tab == remembered.tab).or(tabs.first()).copied();
         let mut controls = |ui: &mut Ui, remembered: &mut Remembered| {
             controls::ui(ui, document, remembered, cx);
         };
-        if has.has_controls && !is_narrow {
+        if !has.hides_controls && !is_narrow {
             let panel = egui::Panel::left("controls").exact_size(232.0);
             let panel = panel.frame(theme::panel(egui::Margin::ZERO));
             panel.show(ui, |ui| right::scrolling(ui, |ui| controls(ui, remembered)));
         }
         if let Some(tab) = wanted {
             right::panel(tab, room).show(ui, |ui| {
-                let chosen = right::tabs(ui, &tabs, tab);
+                let names: Vec<_> = tabs.iter().map(|tab| (*tab, tab.name())).collect();
+                let chosen = widgets::tabs(ui, &names, tab, |_| {});
                 if chosen != tab {
                     remembered.tab = chosen;
                     if chosen == Tab::Check && view.kept.mine.is_some() {
@@ -178,7 +175,7 @@ impl Window {
 /// The numbers of the pixel under the pointer.
 fn numbers(ui: &mut Ui, cx: &PanelContext, display: &Display, tracing: &Tracing, inspector: &Inspector) {
     let view = &cx.model.view;
-    let at = inspector.readout().map(|readout| readout.pixel.at);
+    let at = inspector.readout(&cx.model).map(|readout| readout.pixel.at);
     let value = at.filter(|_| view.show().layer().is_some()).and_then(|at| display.layers.value_at(at));
     let other = tracing.other(&cx.model).map_or(Some(cx.document()), |other| other.document());
     inspector.ui(ui, cx, other, value);

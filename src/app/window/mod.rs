@@ -10,11 +10,10 @@ mod saving;
 mod shell;
 
 use crate::app::commands::{Command, Snapshot};
-use crate::app::dialogs::Dialog;
 use crate::app::files::Files;
 use crate::app::files::store::{Last, Store};
 use crate::app::model::changes::Changes;
-use crate::app::model::{Device, DeviceOptions, Document, Model, Origin, Source, Stored, Tab, ViewState};
+use crate::app::model::{Device, Document, Model, Origin, Source, Stored, Tab, ViewState, middle_of};
 use crate::app::toolkit::theme;
 use crate::app::tools::Tools;
 use crate::app::tracing::Tracing;
@@ -25,7 +24,6 @@ use crate::job::recipe::Recipe;
 use anyhow::{Context as _, Result};
 use eframe::egui;
 use shell::Shell;
-use std::sync::Arc;
 use std::time::Duration;
 
 /// The window of the program.
@@ -75,7 +73,7 @@ impl Window {
         if options.mine.is_some() {
             remembered.mine.clone_from(&options.mine);
             remembered.mine_stage = None;
-            (remembered.has_info, remembered.tab) = (true, Tab::Check);
+            (remembered.hides_info, remembered.tab) = (false, Tab::Check);
         }
         let is_asked_for = options.is_fresh || options.is_picture_given;
         let goes_on = !is_asked_for && !has_hardly_begun;
@@ -104,9 +102,10 @@ impl Window {
                 selected: None,
                 view,
                 remembered,
-                devices: DeviceOptions::of(&options.backend),
+                given: options.backend,
                 is_paused: false,
                 playing: None,
+                hides_panels: false,
                 is_full_screen: false,
                 presentation: None,
             },
@@ -132,6 +131,7 @@ impl Window {
     /// The state of the window now.
     pub fn snapshot(&self) -> Snapshot {
         let [undo, redo] = self.changes.labels(self.document());
+        let is_own = |at| !self.model.view.is_other(middle_of(at, self.document().size())[0]);
         Snapshot {
             status: self.tracing.main.status().clone(),
             other: self.tracing.other_status(&self.model),
@@ -144,9 +144,7 @@ impl Window {
             has_picture: self.tracing.main.has_picture(self.document()),
             is_moving: self.changes.is_in_gesture,
             is_held: self.tracing.main.is_held(),
-            has_pixel: self.tools.inspector.hovered.is_some_and(|[x, _]| {
-                !self.model.view.is_other((f64::from(x) + 0.5) / f64::from(self.document().size()[0]))
-            }),
+            has_pixel: self.tools.inspector.hovered.is_some_and(is_own),
             has_paths: self.tools.paths.len() > 0,
             has_sight: self.display.sight.is_some(),
             invalid: self.tracing.invalid.clone(),
@@ -166,6 +164,7 @@ impl Window {
         self.perform_all(&context);
         self.layout(ui);
         self.perform_all(&context);
+        self.finish_document(&context);
         self.follow(&context);
         theme::paint_focus(&context);
         self.shell.had_focus = context.memory(|memory| memory.focused().is_some())
@@ -216,17 +215,13 @@ impl Window {
         }
     }
 
-    /// Asks before the window closes while a picture is still rendered to be saved.
+    /// Closes the window once everything is saved, or at once if it is closed again.
     fn follow_close(&mut self, context: &egui::Context) {
         let is_asked = context.input(|input| input.viewport().close_requested());
-        // What was asked about may be saved by now.
-        if self.files.unsaved().is_none() && self.shell.dialogs.end_leave() {
-            self.shell.leaves_when_saved = true;
-        }
-        let unsaved = self.files.unsaved().filter(|_| is_asked && !self.shell.is_interrupted());
-        if let Some(name) = unsaved {
+        let is_first = is_asked && !self.shell.leaves_when_saved && !self.shell.is_interrupted();
+        if is_first && self.files.unsaved().is_some() {
             context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
-            self.shell.dialogs.open(Dialog::Leave(name));
+            self.shell.leaves_when_saved = true;
         } else if self.shell.leaves_when_saved && !self.files.is_saving() {
             self.shell.leaves_when_saved = false;
             context.send_viewport_cmd(egui::ViewportCommand::Close);
@@ -239,8 +234,8 @@ impl Window {
         }
     }
 
-    /// Starts what the changes of this frame ask for.
-    fn follow(&mut self, context: &egui::Context) {
+    /// The last changes of the document in this frame.
+    fn finish_document(&mut self, context: &egui::Context) {
         // The selection may be of another scene.
         let count = self.document().scene().spheres.len();
         self.model.selected = self.model.selected.filter(|sphere| *sphere < count);
@@ -248,40 +243,48 @@ impl Window {
             self.shell.toasts.good(error.to_string());
             self.model.document.camera = self.changes.last.camera;
         }
-        self.shell.toasts.follow(&self.model.document);
-        let (document, last) = (&self.model.document, &self.changes.last);
-        if document.stop != last.stop && Arc::ptr_eq(&document.origin, &last.origin) {
-            self.model.own_stop = Some(document.stop).filter(|stop| stop.samples.is_none());
-        }
         let room = self.display.viewport.room_pixels;
         // The dock opens when devices are compared, but their films stay.
         let needs_film = self.files.needs_film() || self.model.other_device().is_some();
         self.tracing.follow_size(context, &mut self.model, room, needs_film);
         self.follow_check();
-        let is_visit = self.display.check.as_ref().is_some_and(|[_, of]| *of == self.model.document);
-        if self.changes.follow(context, &self.model.document, is_visit) {
+        self.leave_useless_views();
+    }
+
+    /// Starts what the changes of this frame ask for.
+    fn follow(&mut self, context: &egui::Context) {
+        let changed = self.changes.look(&self.model);
+        self.shell.toasts.follow(&self.model.document);
+        if changed.picture {
+            self.shell.toasts.end_refusals();
+            self.tools.forget();
+        }
+        if changed.stop {
+            self.model.own_stop = Some(self.model.document.stop).filter(|stop| stop.samples.is_none());
+        }
+        if changed.film {
             self.model.view.end_look();
         }
+        let is_visit = self.display.check.as_ref().is_some_and(|[_, of]| *of == self.model.document);
+        self.changes.follow(context, &self.model.document, changed, is_visit);
         if self.changes.is_moving() {
             context.request_repaint_after(Duration::from_millis(40));
         }
-        self.leave_useless_views();
         let has_second = self.tracing.follow(context, &self.model, &self.changes);
         self.store.follow(context, &self.model, &self.changes, &mut self.tracing);
         let Window { model, tracing, display, tools, files, shell, .. } = self;
         display.follow(context, model, &mut shell.toasts);
-        let subject = Subject::new(&model.view, &model.document, tracing);
-        if let Some(found) = display.denoising.follow(context, &subject, model.view.is_denoised) {
+        if let Some(found) = display.denoising.follow(context, &Subject { model, tracing }) {
             model.view.denoised = Some(found);
         }
-        let subject = Subject::new(&model.view, &model.document, tracing);
+        let subject = Subject { model, tracing };
         let lost = files.follow(context, &subject);
-        files.follow_making(context, &mut shell.toasts);
-        tools.follow(context, model, &subject);
+        files.follow_making(context, &mut shell.toasts, shell.leaves_when_saved);
+        tools.follow(context, &subject);
         if !has_second {
             model.view.end_comparison();
         }
-        display.kept.follow(context, model, tracing);
+        display.kept.follow(context, model, tracing, changed);
         if let Some((document, named)) = lost {
             let samples = document.stop.samples.unwrap_or(document.origin.recipe.samples_per_pixel);
             let backend = self.model.backend();
@@ -331,7 +334,6 @@ impl eframe::App for Window {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         let view = self.display.sight.as_ref().map_or(&self.model.view, |sight| &sight.view);
         Stored::write(self.model.remembered.clone(), view.clone(), storage);
-        Stored::forget_full_screen(storage);
     }
 
     fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {

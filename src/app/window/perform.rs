@@ -23,7 +23,12 @@ use std::sync::Arc;
 impl Window {
     /// Carries out a command. A disabled command shows why it is disabled.
     pub fn perform(&mut self, context: &Context, command: Command) {
+        if let Command::Edit(edit) = command {
+            return self.edit(edit);
+        }
         self.shell.performed = Some(command);
+        // Who goes on working stays.
+        self.shell.leaves_when_saved &= matches!(command, Command::StopSaving | Command::Quit);
         let snapshot = self.snapshot();
         if self.stop_play() && command == Command::Play {
             return;
@@ -52,7 +57,6 @@ impl Window {
                 Source::New | Source::File(_) => What::Scene,
                 _ => What::Picture(OutputFormat::Png),
             }),
-            C::SaveAs(format) => self.ask_save(What::Picture(format)),
             C::SaveAnimation => self.ask_save(What::Animation),
             C::Recent(place) => self.open_recent(context, place),
             C::Copy => files.copy.make(document, ()),
@@ -66,9 +70,9 @@ impl Window {
             C::AddSphere => self.add_sphere(),
             C::DuplicateSphere => self.duplicate_sphere(),
             C::DeleteSphere => {
-                model.selected.into_iter().for_each(|sphere| self.edit(&[Edit::Delete(sphere)]))
+                model.selected.into_iter().for_each(|sphere| self.edit(Edit::Delete(sphere)));
             }
-            C::Sphere(sphere) => model.selected = Some(sphere),
+            C::Edit(edit) => self.edit(edit),
             C::NextSphere => model.selected = spheres::neighbour(document.scene(), model.selected, true),
             C::PreviousSphere => model.selected = spheres::neighbour(document.scene(), model.selected, false),
             C::FocusSphere => self.focus_sphere(),
@@ -99,15 +103,15 @@ impl Window {
                 remembered.theme = theme;
                 context.set_theme(theme);
             }
-            C::Controls => self.toggle(|remembered| &mut remembered.has_controls),
-            C::Info => self.toggle(|remembered| &mut remembered.has_info),
+            C::Controls => self.toggle(|remembered| &mut remembered.hides_controls),
+            C::Info => self.toggle(|remembered| &mut remembered.hides_info),
             C::Code => {
                 let tab = if model.shows(Tab::Code) { Tab::Stage } else { Tab::Code };
-                let remembered = &mut model.remembered;
-                (remembered.tab, remembered.has_panels, remembered.has_info) = (tab, true, true);
+                (model.hides_panels, model.remembered.hides_info) = (false, false);
+                model.remembered.tab = tab;
             }
             C::Field(name) => {
-                (remembered.has_panels, remembered.has_controls) = (true, true);
+                (model.hides_panels, remembered.hides_controls) = (false, false);
                 if context.content_rect().width() < NARROW {
                     remembered.tab = Tab::Controls;
                 }
@@ -125,7 +129,7 @@ impl Window {
                 if std::mem::take(&mut model.is_paused) {
                     tracing.resume();
                 }
-                tracing.restart();
+                tracing.tracers_mut().for_each(|tracer| tracer.started = None);
                 self.store.delete(Some(document.clone()));
             }
             C::RenderAtSize => {
@@ -133,13 +137,10 @@ impl Window {
                 tracing.sizer.ask();
             }
             C::Device(device) => model.choose_device(device),
-            C::SwitchDevice => {
-                let device = remembered.device.toggled(Device::Gpu);
-                model.choose_device(device);
-            }
-            C::Reference => {
-                let device = remembered.device.toggled(Device::Reference);
-                model.choose_device(device);
+            C::SwitchDevice | C::Reference => {
+                let other = if command == C::Reference { Device::Reference } else { Device::Gpu };
+                let is_on = remembered.device == other;
+                model.choose_device(if is_on { Device::Cpu } else { other });
             }
 
             C::Keep => display.kept.wanted.make(document, ()),
@@ -166,7 +167,10 @@ impl Window {
             C::Stages => shell.dialogs.open(Dialog::Stages(stage_list::list(snapshot))),
             C::Stage(stage) => self.show_origin(Origin::of_stage(stage)),
             C::Extreme(case) => self.show_origin(Origin::of_case(case)),
-            C::PreviousStage | C::NextStage => self.step_stage(command == C::NextStage),
+            C::PreviousStage | C::NextStage => {
+                let stage = model.neighbour(command == C::NextStage);
+                stage.into_iter().for_each(|stage| self.show_origin(Origin::of_stage(stage)));
+            }
             C::ShowMe => self.toggle_sight(),
             C::Wipe => view.toggle(Mode::Wipe),
             C::Flip => view.toggle(Mode::Flip),
@@ -174,11 +178,10 @@ impl Window {
             C::CompareWith(partner) => self.compare_with(partner),
             C::CompareDevices => self.compare_devices(),
             C::CompareFile => self.ask_path(context, Purpose::Compare),
-            C::NextPlace => tools
-                .check
-                .next_place()
-                .into_iter()
-                .for_each(|part| display.viewport.placement.show_part(part)),
+            C::NextPlace => {
+                let part = tools.check.next_place();
+                part.into_iter().for_each(|part| display.viewport.placement.show_part(part));
+            }
             C::RenderAtPartnerSize => {
                 view.kept_partner().into_iter().for_each(|kept| document.give_size(kept.size()));
             }
@@ -201,8 +204,6 @@ impl Window {
     }
 
     pub(super) fn refuse(&mut self, name: &str, reason: &str) {
-        let mut letters = reason.chars();
-        let reason: String = letters.next().into_iter().flat_map(char::to_lowercase).chain(letters).collect();
         self.shell.toasts.good(format!("{}: {reason}", name.trim_end_matches('…')));
     }
 
@@ -253,7 +254,6 @@ impl Window {
         let is_other = !Arc::ptr_eq(&before.origin, &self.document().origin);
         if is_other {
             self.leave_picture();
-            self.tools.forget();
         }
         if is_other || before.scene().spheres.len() != self.document().scene().spheres.len() {
             self.model.selected = None;
@@ -295,8 +295,8 @@ impl Window {
         true
     }
 
-    pub(super) fn edit(&mut self, edits: &[Edit]) {
-        if let Err(reason) = spheres::edit(&mut self.model, edits) {
+    pub(super) fn edit(&mut self, edit: Edit) {
+        if let Err(reason) = spheres::edit(&mut self.model, edit) {
             self.shell.toasts.good(reason);
         }
     }
@@ -305,7 +305,7 @@ impl Window {
         let (document, place) = (self.document(), self.display.viewport.aim());
         let body =
             new_body(document.pick(&document.camera, place), &document.camera, document.aspect(), place);
-        self.edit(&[Edit::Add(body)]);
+        self.edit(Edit::Add(body));
     }
 
     /// Adds a copy of the selected sphere, to the right of the camera.
@@ -316,7 +316,7 @@ impl Window {
         let is_taken = |center: &DVec3| spheres.iter().any(|other| other.center == *center);
         let center =
             (1..).map(|steps| body.center + f64::from(steps) * step).find(|center| !is_taken(center));
-        self.edit(&[Edit::Add(Body { center: center.unwrap_or(body.center), ..body })]);
+        self.edit(Edit::Add(Body { center: center.unwrap_or(body.center), ..body }));
     }
 
     pub(super) fn focus_sphere(&mut self) {
@@ -336,22 +336,21 @@ impl Window {
 
     /// Shows or hides a panel. If all are hidden, shows them with this one.
     pub(super) fn toggle(&mut self, panel: impl FnOnce(&mut Remembered) -> &mut bool) {
-        let remembered = &mut self.model.remembered;
-        let had_panels = std::mem::replace(&mut remembered.has_panels, true);
-        let panel = panel(remembered);
-        *panel = !*panel || !had_panels;
+        let had_panels = !std::mem::take(&mut self.model.hides_panels);
+        let is_hidden = panel(&mut self.model.remembered);
+        *is_hidden = !*is_hidden && had_panels;
     }
 
     /// Gives the focus to a control of the next panel, or to a message.
     fn focus_next_panel(&mut self, context: &Context) {
-        let Remembered { tab, has_controls, has_info, dock, .. } = self.model.remembered;
+        let Remembered { tab, hides_controls, hides_info, dock, .. } = self.model.remembered;
         let is_narrow = context.content_rect().width() < NARROW;
-        let of_left = if self.document().no_rays().is_some() { "Render" } else { "Field of view" };
+        let of_left = if self.document().no_rays().is_some() { "Render" } else { "Camera" };
         let of_right = if tab == Tab::Stage { "Compare with" } else { tab.name() };
         let panels = [
             (MENUS[0], true),
-            (of_left, has_controls && (!is_narrow || tab == Tab::Controls)),
-            (of_right, has_info && tab != Tab::Controls),
+            (of_left, !hides_controls && (!is_narrow || tab == Tab::Controls)),
+            (of_right, !hides_info && tab != Tab::Controls),
             (dock.map_or("", Dock::name), dock.is_some()),
             ("Close this message", self.shell.toasts.texts().next().is_some()),
         ];
@@ -365,10 +364,9 @@ impl Window {
     }
 
     pub(super) fn toggle_dock(&mut self, dock: Dock) {
-        let remembered = &mut self.model.remembered;
-        let is_open = remembered.has_panels && remembered.dock == Some(dock);
-        remembered.has_panels = true;
-        remembered.dock = if is_open { None } else { Some(dock) };
+        let had_panels = !std::mem::take(&mut self.model.hides_panels);
+        let is_open = had_panels && self.model.remembered.dock == Some(dock);
+        self.model.remembered.dock = (!is_open).then_some(dock);
     }
 
     pub(super) fn toggle_panels(&mut self) {
@@ -376,9 +374,8 @@ impl Window {
             presentation.has_captions = !presentation.has_captions;
             return;
         }
-        let has_panels = &mut self.model.remembered.has_panels;
-        *has_panels = !*has_panels;
-        if !*has_panels {
+        self.model.hides_panels ^= true;
+        if self.model.hides_panels {
             self.shell.toasts.good("Tab brings the panels back");
         }
     }

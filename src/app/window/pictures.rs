@@ -43,7 +43,6 @@ impl Window {
         let was_with_stage = is_with_stage(&self.model);
         if !Arc::ptr_eq(&document.origin, &self.document().origin) {
             self.leave_picture();
-            self.shell.toasts.end_refusals();
         }
         self.model.document = document;
         // The next stage has a partner of its own; what has none is not compared with something of another kind.
@@ -54,7 +53,6 @@ impl Window {
         if self.model.remembered.tab == Tab::Check {
             self.model.remembered.tab = Tab::Stage;
         }
-        self.tools.forget();
     }
 
     /// Leaves what belongs to the picture that was shown.
@@ -62,12 +60,6 @@ impl Window {
         self.model.view.leave_partner();
         self.display.viewport.placement.leave_part();
         self.display.check = None;
-    }
-
-    pub(super) fn step_stage(&mut self, is_next: bool) {
-        if let Some(stage) = self.model.neighbour(is_next) {
-            self.show_origin(Origin::of_stage(stage));
-        }
     }
 
     pub(super) fn compare_with(&mut self, partner: Partner) {

@@ -75,7 +75,10 @@ impl Window {
         if let Some(outcome) = self.shell.dialogs.chosen() {
             self.end_dialog(context, outcome);
         }
-        self.follow_scene_file(context);
+        self.files.scene_file.watch(context, &self.model.document.origin);
+        while let Some(Ok(path)) = self.files.scene_file.changes.take() {
+            self.files.open(context, path);
+        }
         let device = &mut self.model.remembered.device;
         self.tracing.report(device, &mut self.shell.toasts);
     }
@@ -91,8 +94,12 @@ impl Window {
     }
 
     fn show_opened(&mut self, (saved, film): Opened) {
+        let source = Source::File(saved.path.clone());
         let mut document = match saved.kind {
-            Kind::Scene => Document::new(Origin::new(saved.recipe.clone(), Source::File(saved.path.clone()))),
+            Kind::Scene if source == self.document().origin.source => {
+                self.document().reloaded(saved.recipe.clone())
+            }
+            Kind::Scene => Document::new(Origin::new(saved.recipe.clone(), source)),
             _ => Document::of_film(&saved.recipe, saved.stage()),
         };
         document.has_own_size = true;
@@ -128,8 +135,9 @@ impl Window {
     }
 
     fn add_kept(&mut self, kept: Kept) {
-        let place = self.model.view.keep(kept);
-        self.model.view.kept.iter().last().into_iter().for_each(|kept| self.store.pin(Arc::clone(kept)));
+        let kept = self.model.view.keep(kept);
+        let place = self.model.view.kept.place(&kept);
+        self.store.pin(kept);
         self.shell.toasts.good(format!("Kept; Compare with has it as number {}", place + 1));
     }
 
@@ -140,30 +148,6 @@ impl Window {
             for document in self.changes.all_mut().chain([&mut self.model.document]) {
                 if Arc::ptr_eq(&document.origin, &saved.origin) {
                     document.origin = Arc::clone(&origin);
-                }
-            }
-        }
-    }
-
-    /// Watches the scene file, and takes what was read from it again.
-    fn follow_scene_file(&mut self, context: &Context) {
-        let origin = Arc::clone(&self.document().origin);
-        self.files.scene_file.watch(context, &origin);
-        let Source::File(path) = &origin.source else {
-            self.shell.toasts.end_error("File not reloaded");
-            return;
-        };
-        let name = name_of(path);
-        while let Some(recipe) = self.files.scene_file.reread.take() {
-            match recipe {
-                Ok(recipe) => {
-                    let reloaded = self.document().reloaded(recipe);
-                    self.show_document(reloaded);
-                    self.shell.toasts.end_error("File not reloaded");
-                    self.shell.toasts.good(format!("Reloaded {name}; Undo returns"));
-                }
-                Err(reason) => {
-                    self.shell.toasts.bad(format!("File not reloaded: {reason}. The picture stays as it is"))
                 }
             }
         }

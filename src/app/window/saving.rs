@@ -7,7 +7,7 @@ use crate::batch::{BatchOptions, FrameNames, FramesOptions, Output, Studio};
 use crate::job::output::OutputFormat;
 use crate::job::recipe::Recipe;
 use crate::system::terminal::ProgressChoice;
-use eframe::egui::{self, Context, ViewportCommand};
+use eframe::egui::{self, Context};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -41,11 +41,6 @@ impl Window {
                 if let Err(reason) = self.save(context, wanted) {
                     self.shell.toasts.bad(format!("Not saved: {reason}"));
                 }
-            }
-            Outcome::Leave { saves: true } => self.shell.leaves_when_saved = true,
-            Outcome::Leave { saves: false } => {
-                self.files.stop_saving();
-                context.send_viewport_cmd(ViewportCommand::Close);
             }
             Outcome::Stay | Outcome::Close => {}
         }

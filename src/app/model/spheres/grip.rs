@@ -1,6 +1,7 @@
 //! Drags of spheres, and the place of a new sphere.
 
 use crate::app::model::Body;
+use crate::numbers::rounded;
 use crate::scene::{Camera, Material, Pick};
 use glam::DVec3;
 
@@ -83,7 +84,10 @@ impl Held {
 pub fn new_body(hit: Option<Pick>, camera: &Camera, aspect: f64, place: [f64; 2]) -> Body {
     let direction = camera.direction_through(place, aspect);
     let height = 2.0 * (camera.vfov_degrees.to_radians() / 2.0).tan();
-    let radius_at = |distance: f64| two_digits(NEW_SHARE * height * distance);
+    let radius_at = |distance: f64| {
+        let radius = NEW_SHARE * height * distance;
+        rounded(radius, radius, 2)
+    };
     let material = Material::Lambertian { albedo: DVec3::new(0.7, 0.3, 0.3) };
     match hit {
         Some(pick) => {
@@ -96,12 +100,6 @@ pub fn new_body(hit: Option<Pick>, camera: &Camera, aspect: f64, place: [f64; 2]
             Body { center, radius: radius_at(distance), material }
         }
     }
-}
-
-/// Rounds a positive number to two digits.
-fn two_digits(value: f64) -> f64 {
-    let unit = 10.0_f64.powf(value.log10().floor() - 1.0);
-    (value / unit).round() * unit
 }
 
 #[cfg(test)]

@@ -38,25 +38,24 @@ impl Selected {
 ///
 /// # Errors
 /// Why the scene would be invalid; it is then as before.
-pub fn edit(model: &mut Model, edits: &[Edit]) -> Result<(), String> {
+pub fn edit(model: &mut Model, edit: Edit) -> Result<(), String> {
     let document = &model.document;
     let (scene, recipe) = (document.scene(), &document.origin.recipe);
-    let count = (scene.spheres.len() + edits.len()) as u64;
+    let count = scene.spheres.len() as u64 + 1;
     memory::check(
         || format!("a changed copy of {count} spheres"),
         count * (size_of::<Sphere>() as u64 + TRACING_BYTES_PER_SPHERE),
         "save the scene and open it again, which frees the copies that undo keeps",
     )
     .map_err(|error| error.to_string())?;
-    let (mut scene, mut selected) = (scene.clone(), model.selected);
-    edits.iter().for_each(|edit| selected = edit.apply(&mut scene));
+    let mut scene = scene.clone();
+    let selected = edit.apply(&mut scene);
     // A value that was typed or dragged back is not a change.
     let checked = if scene == *recipe.scene {
         Arc::clone(&document.origin.scene)
     } else {
-        let change = edits.last().map_or("", |edit| edit.name(document.scene()));
         let mut checked = CheckedScene::new(Arc::new(scene), recipe.rules);
-        checked.change = change;
+        checked.change = edit.name(document.scene());
         checked.check().map_err(|error| error.to_string())?;
         Arc::new(checked)
     };
@@ -79,7 +78,7 @@ pub fn ground<'a>(scene: &'a Scene, camera: &'a Camera) -> impl Iterator<Item = 
     scene.spheres.iter().filter(is_below).filter(is_opaque)
 }
 
-fn is_ground(sphere: &Sphere, camera: &Camera) -> bool {
+pub fn is_ground(sphere: &Sphere, camera: &Camera) -> bool {
     sphere.radius >= GROUND * camera.look_from.distance(camera.look_at)
 }
 
@@ -100,11 +99,11 @@ mod tests {
         let model = &mut window.model;
         let first = Body::of(model.document.scene(), 1).unwrap();
         let with_radius = |radius| Edit::Change(1, Body { radius, ..first });
-        edit(model, &[with_radius(0.125)]).unwrap();
+        edit(model, with_radius(0.125)).unwrap();
         assert_eq!((model.document.scene().spheres[1].radius, model.selected), (0.125, Some(1)));
-        assert!(edit(model, &[with_radius(0.0)]).unwrap_err().contains("radius"));
+        assert!(edit(model, with_radius(0.0)).unwrap_err().contains("radius"));
         assert_eq!(model.document.scene().spheres[1].radius, 0.125);
-        edit(model, &[with_radius(first.radius)]).unwrap();
+        edit(model, with_radius(first.radius)).unwrap();
         assert!(!model.document.has_changed_scene(), "a value that is typed back");
     }
 

@@ -70,29 +70,16 @@ fn typed_numbers_apply_once_within_limits() {
 }
 
 #[test]
-fn a_group_can_be_reset_only_if_it_was_changed() {
-    let mut harness = panel("--stage book");
-    assert!(harness.query_by_label("Reset lens").is_none());
-    let original = harness.state().document().camera;
-    set(&mut harness, "Focus distance", "7");
-    assert_eq!(harness.state().document().camera.focus_distance, Some(7.0));
-    harness.get_by_label("Reset lens").click();
-    harness.run_steps(3);
-    assert_eq!(harness.state().document().camera, original);
-    assert!(harness.query_by_label("Reset lens").is_none());
-}
-
-#[test]
 fn another_kind_of_material_keeps_the_colour() {
     let mut harness = panel("--stage glass-schlick");
     harness.state_mut().snapshot.model.selected = Some(1);
     harness.run_steps(3);
     harness.get_by_label("Metal").click();
     harness.run_steps(2);
-    let edit = harness.state_mut().requests.get_mut().edits.pop();
+    let edit = harness.state_mut().requests.get_mut().pop();
     let body = Body::of(harness.state().document().scene(), 1).unwrap();
     let material = Material::Metal { albedo: body.material.albedo().unwrap(), fuzz: 0.0 };
-    assert_eq!(edit, Some(Edit::Change(1, Body { material, ..body })));
+    assert_eq!(edit, Some(Command::Edit(Edit::Change(1, Body { material, ..body }))));
 }
 
 #[test]

@@ -8,14 +8,10 @@ use crate::app::model::{Document, at_other, best_isa};
 use crate::app::toolkit::Query;
 use crate::backends::explain::{Step, steps};
 use crate::render_cpu::PathRecorder;
-use crate::scene::Sphere;
 use eframe::egui;
 
 /// The largest number of paths that are recorded.
 const COUNT_LIMIT: u64 = 256;
-
-/// Spheres of at least this radius are the ground, or the planet, that the others stand on.
-const GROUND_RADIUS: f64 = 50.0;
 
 /// Each ray of a path, and what happens at its end, in words.
 type Path = Vec<(Step, String)>;
@@ -127,10 +123,6 @@ impl Paths {
 /// The number of paths that are listed: as many as the picture has samples per pixel when it ends, if that is known.
 fn count_in(document: &Document) -> u64 {
     document.stop.samples.unwrap_or(COUNT_LIMIT).clamp(1, COUNT_LIMIT)
-}
-
-fn is_ground(sphere: &Sphere) -> bool {
-    sphere.radius >= GROUND_RADIUS
 }
 
 #[cfg(test)]

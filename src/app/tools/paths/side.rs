@@ -1,10 +1,10 @@
 //! A path seen from the side: from the eye, its first ray is only a point.
 
-use super::{Path, is_ground};
-use crate::app::model::Document;
-use crate::app::model::spheres::MANY;
+use super::Path;
+use crate::app::model::spheres::{MANY, is_ground};
+use crate::app::model::{Document, kind_word};
 use crate::app::toolkit::theme;
-use crate::scene::{Look, Sphere};
+use crate::scene::Sphere;
 use eframe::egui::{Align2, Color32, RichText, Sense, Ui};
 use egui_plot::{Line, MarkerShape, Plot, PlotBounds, PlotPoint, PlotPoints, Points, Polygon, Text};
 use glam::{DVec2, DVec3};
@@ -23,7 +23,8 @@ pub(super) fn ui(ui: &mut Ui, path: &Path, at: usize, document: &Document) {
     let hits: Vec<_> = path.iter().filter_map(|(step, _)| step.hit).collect();
     let touched: BTreeSet<usize> = hits.iter().map(|hit| hit.sphere).collect();
     let touched = touched.into_iter().map(|sphere| &scene.spheres[sphere]);
-    let (grounds, balls): (Vec<&Sphere>, Vec<&Sphere>) = touched.partition(|sphere| is_ground(sphere));
+    let (grounds, balls): (Vec<&Sphere>, Vec<&Sphere>) =
+        touched.partition(|sphere| is_ground(sphere, &document.camera));
 
     // The plane through up and the direction in which the path reaches farthest.
     let up = document.camera.vup.normalize_or(DVec3::Y);
@@ -78,7 +79,7 @@ pub(super) fn ui(ui: &mut Ui, path: &Path, at: usize, document: &Document) {
         plot.set_plot_bounds(PlotBounds::from_min_max(from.to_array(), to.to_array()));
         // What the plane cuts, and what the path touches.
         let count = if scene.spheres.len() > MANY { 0 } else { scene.spheres.len() };
-        for sphere in scene.spheres[..count].iter().filter(|sphere| !is_ground(sphere)) {
+        for sphere in scene.spheres[..count].iter().filter(|sphere| !is_ground(sphere, &document.camera)) {
             let off = sphere.center.dot(normal) - depth;
             if off.abs() < sphere.radius {
                 let radius = (sphere.radius.powi(2) - off.powi(2)).sqrt();
@@ -88,12 +89,8 @@ pub(super) fn ui(ui: &mut Ui, path: &Path, at: usize, document: &Document) {
         for ball in &balls {
             let center = flat(ball.center);
             plot.polygon(circle(center, ball.radius, colours.text));
-            let name = match scene.material_of(ball).look() {
-                Look::Matte => "matte ball",
-                Look::Mirror { .. } => "metal ball",
-                Look::Glass { .. } => "glass ball",
-            };
-            plot.text(label(center + DVec2::Y * ball.radius, Align2::CENTER_BOTTOM, name));
+            let name = format!("{} ball", kind_word(scene.material_of(ball)));
+            plot.text(label(center + DVec2::Y * ball.radius, Align2::CENTER_BOTTOM, &name));
         }
         // The upper edges of huge spheres.
         for sphere in &grounds {

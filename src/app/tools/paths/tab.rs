@@ -1,12 +1,13 @@
 //! The dock's tab of a path: its points in words, and the path seen from the side.
 
-use super::{Path, Paths, is_ground, side};
+use super::{Path, Paths, side};
+use crate::app::model::Document;
+use crate::app::model::spheres::is_ground;
 use crate::app::toolkit::number::{compact, point_words};
 use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{choice, hint, sign_button, small, tip};
 use crate::backends::explain::{Event, Lobe};
 use crate::progressive::describe::counted;
-use crate::scene::Scene;
 use eframe::egui::{Align, Atom, Label, Layout, Margin, RichText, ScrollArea, Sides, Ui, vec2};
 
 /// The largest width of the list, points.
@@ -60,7 +61,7 @@ impl Paths {
                 );
                 ui.add_space(4.0);
                 ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                    points_ui(ui, path, &mut point, listed.document.scene());
+                    points_ui(ui, path, &mut point, &listed.document);
                 });
             });
             ui.vertical(|ui| {
@@ -76,11 +77,11 @@ impl Paths {
     }
 }
 
-fn points_ui(ui: &mut Ui, path: &Path, point: &mut usize, scene: &Scene) {
+fn points_ui(ui: &mut Ui, path: &Path, point: &mut usize, document: &Document) {
     let shown = *point;
     for at in 0..=path.len() {
         let (is_shown, number) = (at == shown, RichText::new((at + 1).to_string()).weak());
-        let button = choice(ui, is_shown, (number, title(path, at, scene), Atom::grow()));
+        let button = choice(ui, is_shown, (number, title(path, at, document), Atom::grow()));
         let button = button.min_size(vec2(ui.available_width(), 24.0)).frame_when_inactive(is_shown);
         let response = ui.add(button);
         if response.clicked() {
@@ -104,11 +105,12 @@ fn points_ui(ui: &mut Ui, path: &Path, point: &mut usize, scene: &Scene) {
 }
 
 /// A point of a path in a few words.
-fn title(path: &Path, at: usize, scene: &Scene) -> String {
+fn title(path: &Path, at: usize, document: &Document) -> String {
     let Some((step, _)) = at.checked_sub(1).and_then(|before| path.get(before)) else {
         return "from the camera".to_owned();
     };
     let hit = step.hit;
+    let is_ground = |sphere: usize| is_ground(&document.scene().spheres[sphere], &document.camera);
     match step.event {
         Event::Sky => "ends in the sky",
         Event::Shown => "ends at the surface",
@@ -122,9 +124,7 @@ fn title(path: &Path, at: usize, scene: &Scene) -> String {
                 (false, false) => "back into the glass",
             }
         }
-        Event::Scattered(_) if hit.is_some_and(|hit| is_ground(&scene.spheres[hit.sphere])) => {
-            "off the ground"
-        }
+        Event::Scattered(_) if hit.is_some_and(|hit| is_ground(hit.sphere)) => "off the ground",
         Event::Scattered(Lobe::Metal { .. }) => "off metal",
         Event::Scattered(Lobe::Hemisphere | Lobe::Lambertian) => "off matte",
     }
