@@ -3,15 +3,18 @@
 //! without.
 //!
 //! `cargo run --release --example check_table [MISTAKE...]`; the mistake `right` stands for correct pictures. Mistakes
-//! that Weekender does not know are planted, too: for those, a guess counts as right, and so does no answer.
+//! that Weekender does not know are planted, too: for those, a guess counts as right, and so does no answer. So are numbers
+//! that are typed wrong; they are named as the answer names them.
 
 #[path = "../tests/program/check/book.rs"]
 mod book;
 
 use book::Book;
+use book::Material::{Dielectric, Lambertian, Metal};
+use glam::DVec3;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
-use weekender::comparison::check::{Mine, judge};
+use weekender::comparison::check::{Hypothesis, Mine, judge};
 use weekender::stages::Stage;
 
 /// Mistakes, each with a stage in which it shows.
@@ -90,6 +93,49 @@ const UNKNOWN: [(&str, &str); 12] = [
     ("truncated", "lambertian-gamma"),
 ];
 
+/// Numbers that are typed wrong: what must be said, a stage, and the change.
+const NUMBERS: [(&str, &str, fn(&mut Book)); 24] = [
+    ("the x of the left ball is -1.1", "metal-fuzzy", |it| it.world[2].center.x = -1.1),
+    ("the z of the middle ball is -1", "metal-fuzzy", |it| it.world[1].center.z = -1.0),
+    ("the y of the ground is -100", "metal-fuzzy", |it| it.world[0].center.y = -100.0),
+    ("the radius of the right ball is 0.45", "metal-fuzzy", |it| it.world[3].radius = 0.45),
+    ("the fuzz of the right ball is 0.3", "metal-fuzzy", |it| it.world[3].mat = Metal(GOLD, 0.3)),
+    ("the fuzz of the left ball is 0", "metal-fuzzy", |it| it.world[2].mat = Metal(DVec3::splat(0.8), 0.0)),
+    ("the blue of the right ball is 0.4", "metal-fuzzy", |it| it.world[3].mat = Metal(GOLD.with_z(0.4), 1.0)),
+    ("the blue of the middle ball is 0.4", "metal-fuzzy", |it| {
+        it.world[1].mat = Lambertian(BLUE.with_z(0.4))
+    }),
+    ("the blue of the ground is 0.3", "metal-fuzzy", |it| {
+        it.world[0].mat = Lambertian(DVec3::new(0.8, 0.8, 0.3));
+    }),
+    ("the field of view is 85", "metal-fuzzy", |it| it.vfov = 85.0),
+    ("the camera's z is 0.1", "metal-fuzzy", |it| it.look_from.z = 0.1),
+    ("the red of the ball is 0.7", "lambertian-gamma", |it| {
+        it.world[0].mat = Lambertian(DVec3::new(0.7, 0.5, 0.5))
+    }),
+    ("the radius of the ball is 0.6", "lambertian-gamma", |it| it.world[0].radius = 0.6),
+    ("the z of the ball is -1.5", "lambertian-gamma", |it| it.world[0].center.z = -1.5),
+    ("the refraction index of the left ball is 1.33", "hollow-glass", |it| {
+        it.world[2].mat = Dielectric(1.33)
+    }),
+    ("the refraction index of the left ball is 2", "hollow-glass", |it| it.world[2].mat = Dielectric(2.0)),
+    ("the refraction index of the left ball is 1.52", "hollow-glass", |it| {
+        it.world[2].mat = Dielectric(1.52)
+    }),
+    ("the radius of the air inside the glass is 0.45", "hollow-glass", |it| it.world[3].radius = 0.45),
+    ("the refraction index of the air inside the glass is 1", "hollow-glass", |it| {
+        it.world[3].mat = Dielectric(1.0)
+    }),
+    ("the fuzz of the right ball is 0.5", "hollow-glass", |it| it.world[4].mat = Metal(GOLD, 0.5)),
+    ("the defocus angle is 5", "defocus", |it| it.defocus_angle = 5.0),
+    ("the focus distance is 3", "defocus", |it| it.focus_dist = 3.0),
+    ("the field of view is 25", "defocus", |it| it.vfov = 25.0),
+    ("the camera's y is 1.8", "defocus", |it| it.look_from.y = 1.8),
+];
+
+const GOLD: DVec3 = DVec3::new(0.8, 0.6, 0.2);
+const BLUE: DVec3 = DVec3::new(0.1, 0.2, 0.5);
+
 /// Samples per pixel of right pictures.
 const SAMPLES: [u32; 12] = [4, 5, 8, 10, 16, 25, 32, 50, 80, 100, 200, 500];
 
@@ -98,7 +144,7 @@ const EDITION_3: [&str; 3] = ["lambertian-gamma", "metal-fuzzy", "hollow-glass"]
 
 const SIZE: [u32; 2] = [240, 135];
 
-/// The answers for planted mistakes, with `--stage` or without.
+/// The answers for wrong pictures, with `--stage` or without.
 #[derive(Default)]
 struct Tally {
     named: usize,
@@ -109,29 +155,37 @@ struct Tally {
 
 fn main() -> anyhow::Result<()> {
     let wanted: Vec<String> = std::env::args().skip(1).collect();
-    let is_wanted = |mistake: &str| wanted.is_empty() || wanted.iter().any(|name| name == mistake);
+    let is_wanted = |what: &str| wanted.is_empty() || wanted.iter().any(|name| name == what);
     let mut tallies = [Tally::default(), Tally::default()];
     let mut all = 0;
-    println!("| mistake | stage | with --stage | without |\n|---|---|---|---|");
+    println!("| wrong is | stage | with --stage | without |\n|---|---|---|---|");
+    let mistakes = PLANTED.into_iter().chain(UNKNOWN).map(|(is, stage)| (is, stage, false, None));
     let third = PLANTED.into_iter().filter(|(_, stage)| EDITION_3.contains(stage));
-    let all_cases =
-        PLANTED.into_iter().chain(UNKNOWN).map(|it| (it, false)).chain(third.map(|it| (it, true)));
-    for ((mistake, stage), is_third) in all_cases.filter(|((mistake, _), _)| is_wanted(mistake)) {
-        let mine = planted(stage, mistake, is_third, 80, 1);
+    let third = third.map(|(is, stage)| (is, stage, true, None));
+    let numbers = NUMBERS.into_iter().map(|(is, stage, change)| (is, stage, false, Some(change)));
+    for (is, stage, is_third, change) in mistakes.chain(third).chain(numbers).filter(|it| is_wanted(it.0)) {
+        let program =
+            |mistake| if is_third { Book::of_edition_3(stage, mistake) } else { Book::new(stage, mistake) };
+        let mut wrong = program(if change.is_none() { is } else { "" });
+        if let Some(change) = change {
+            change(&mut wrong);
+        }
+        let mine = rendered(&wrong, 80, 1);
+        assert!(mine != rendered(&program(""), 80, 1), "{is} does not change {stage}");
         all += 1;
-        let mut row = format!("| {mistake} | {stage}{} |", if is_third { ", edition 3" } else { "" });
+        let mut row = format!("| {is} | {stage}{} |", if is_third { ", edition 3" } else { "" });
         for (tally, given) in tallies.iter_mut().zip([Some(stage), None]) {
-            let (found, took) = found(&mine, given, mistake)?;
+            let (found, took) = found(&mine, given, is)?;
             tally.seconds += took;
-            let case = format!("{mistake} in {stage}: {found}");
+            let case = format!("{is} in {stage}: {found}");
             match found.as_str() {
-                _ if found == mistake => tally.named += 1,
+                "named" => tally.named += 1,
                 "right" => tally.passed.push(case),
                 "unknown" => {}
                 guess if guess.ends_with('?') => {}
                 _ => tally.surely_wrong.push(case),
             }
-            row += &format!(" {} |", if found == mistake { "named" } else { &found });
+            row += &format!(" {found} |");
         }
         println!("{row}");
     }
@@ -151,56 +205,57 @@ fn main() -> anyhow::Result<()> {
         return Ok(());
     }
 
-    let (mut wrong, mut pictures) = (Vec::new(), 0);
+    let (mut accused, mut pictures) = (Vec::new(), 0);
     for (seed, samples) in (11..).zip(SAMPLES) {
-        for (stage, is_third) in
-            book::STAGES.into_iter().map(|it| (it, false)).chain(EDITION_3.map(|it| (it, true)))
+        let programs = book::STAGES.map(|stage| (stage, Book::new(stage, "")));
+        for (stage, program) in
+            programs.into_iter().chain(EDITION_3.map(|stage| (stage, Book::of_edition_3(stage, ""))))
         {
-            let mine = planted(stage, "", is_third, samples, seed);
+            let mine = rendered(&program, samples, seed);
             pictures += 1;
             for given in [Some(stage), None] {
                 let (found, _) = found(&mine, given, "")?;
                 if !["right", "edition-scene", "edition-camera", "edition-fuzz"].contains(&found.as_str()) {
-                    wrong.push(format!("{stage} ({given:?}), {samples} samples, seed {seed}: {found}"));
+                    accused.push(format!("{stage} ({given:?}), {samples} samples, seed {seed}: {found}"));
                 }
             }
         }
     }
     println!(
         "False alarms: {} of {pictures} correct pictures, each tried both ways. {}",
-        wrong.len(),
-        wrong.join("; ")
+        accused.len(),
+        accused.join("; ")
     );
     Ok(())
 }
 
-fn planted(stage: &'static str, mistake: &'static str, is_third: bool, samples: u32, seed: u64) -> Mine {
+fn rendered(program: &Book, samples: u32, seed: u64) -> Mine {
     let [width, height] = SIZE;
-    let program = if is_third { Book::of_edition_3 } else { Book::new };
-    let picture = |mistake| program(stage, mistake).render(width, height, samples, seed);
-    let shown = picture(mistake);
-    assert!(mistake.is_empty() || shown != picture(""), "{mistake} does not change {stage}");
-    Mine::of_bytes(shown, SIZE)
+    Mine::of_bytes(program.render(width, height, samples, seed), SIZE)
 }
 
-/// The finding for a picture, and how many seconds it took: a sure number in its words, or the id of a mistake. If two
-/// mistakes give the same picture, the planted one counts.
-fn found(mine: &Mine, stage: Option<&str>, planted: &str) -> anyhow::Result<(String, f64)> {
+/// The answer for a picture, and how many seconds it took: "named" if what is wrong is among what explains it surely, or the
+/// first thing that does; with a question mark, if it is a guess.
+fn found(mine: &Mine, stage: Option<&str>, is: &str) -> anyhow::Result<(String, f64)> {
     let begin = Instant::now();
     let finding = judge(mine, stage.map(Stage::find).transpose()?, &AtomicBool::new(false), |_| {})?;
     let seconds = begin.elapsed().as_secs_f64();
-    if finding.alike.iter().filter_map(|alike| alike.named()).any(|alike| alike.id == planted) {
-        return Ok((planted.to_owned(), seconds));
-    }
-    let explains = finding.found.as_ref().map_or(&[][..], |found| &found.hypothesis.numbers);
-    if let (Some(number), true) = (explains.first(), finding.is_sure) {
-        return Ok((format!("number: {}", number.words), seconds));
-    }
-    let found = match finding.named() {
-        Some(mistake) if finding.is_sure => mistake.id.to_owned(),
-        Some(mistake) => format!("{}?", mistake.id),
-        None if finding.is_right() => "right".to_owned(),
-        None => "unknown".to_owned(),
+    let explains = finding.found.as_ref().unwrap_or(&finding.right);
+    let mut all = [&explains.hypothesis].into_iter().chain(&finding.alike).map(said);
+    let first = all.next().unwrap_or_default();
+    let is_named = |said: &str| said == is || is.contains(' ') && said.starts_with(&format!("{is},"));
+    let found = match (finding.is_sure, first) {
+        (true, first) if is_named(&first) || all.any(|other| is_named(&other)) => "named".to_owned(),
+        (true, first) if first.is_empty() => "right".to_owned(),
+        (true, first) => first,
+        (false, first) if first.is_empty() => "unknown".to_owned(),
+        (false, first) => format!("{first}?"),
     };
     Ok((found, seconds))
+}
+
+/// The words of a hypothesis's numbers, or the id of its mistake.
+fn said(it: &Hypothesis) -> String {
+    let numbers: Vec<&str> = it.numbers.iter().map(|number| number.words.as_str()).collect();
+    if numbers.is_empty() { it.named().map_or("", |named| named.id).to_owned() } else { numbers.join("; ") }
 }

@@ -5,7 +5,7 @@ use crate::picture::Picture;
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use std::path::PathBuf;
-use weekender::backends::BackendChoice;
+use weekender::cli::BackendFlags;
 use weekender::stages::Stage;
 use weekender::system::terminal::ProgressChoice;
 
@@ -29,7 +29,7 @@ pub struct Options {
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,
     #[command(flatten)]
-    pub backend: BackendChoice,
+    pub backend: BackendFlags,
 }
 
 impl Options {

@@ -71,7 +71,8 @@ pub fn render(
     for picture in &pictures {
         picture.recipe.job().map_err(Failure::input)?.check_memory(1, 0).map_err(Failure::input)?;
     }
-    let mut studio = Studio::open(&options.backend, interrupt)?;
+    let backend = options.backend.choice().map_err(Failure::input)?;
+    let mut studio = Studio::open(&backend, interrupt)?;
     make_directory(&options.out.join(FOLDER)).map_err(Failure::Input)?;
     let mut paths = pictures.iter().map(|picture| options.out.join(picture.file()));
     paths.try_for_each(|path| check_writable(&path)).map_err(Failure::input)?;

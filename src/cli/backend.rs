@@ -15,9 +15,9 @@ enum Device {
     Reference,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Device")]
-pub(super) struct BackendFlags {
+pub struct BackendFlags {
     /// What renders; auto: the fastest available
     #[arg(long, value_enum, default_value = "auto")]
     device: Device,
@@ -36,6 +36,10 @@ pub(super) struct BackendFlags {
 }
 
 impl BackendFlags {
+    /// The backend that these flags choose.
+    ///
+    /// # Errors
+    /// If a flag applies to another kind of device.
     pub fn choice(&self) -> Result<BackendChoice> {
         let (isa, lanes, threads) = (self.isa, self.simd, self.threads);
         let cpu = CpuOptions { isa, lanes, threads, ..CpuOptions::default() };

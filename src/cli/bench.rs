@@ -133,8 +133,8 @@ impl BenchOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{Command, Request};
     use crate::cli::tests::request;
+    use crate::cli::{Command, Request};
 
     fn options(words: &str) -> BenchOptions {
         match request(&format!("bench --scene metals --isa portable --threads 1 {words}")) {

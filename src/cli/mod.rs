@@ -12,6 +12,7 @@ mod values;
 #[cfg(feature = "window")]
 mod window;
 
+pub use backend::BackendFlags;
 pub use bench::{BenchOptions, BenchScene};
 pub use direct::{CheckOptions, CompareOptions, StressOptions};
 pub use paths::{check_outputs, check_paths};

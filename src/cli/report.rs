@@ -155,8 +155,8 @@ impl ReportOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{Command, Request};
     use crate::cli::tests::request;
+    use crate::cli::{Command, Request};
 
     fn parsed(words: &str) -> ReportOptions {
         match request(&format!("report --out r {words}")) {

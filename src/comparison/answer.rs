@@ -4,6 +4,7 @@ use crate::system::failure::{BAD_INPUT, FAILED};
 use crate::system::terminal::{print_beside, write_figures};
 use anyhow::Result;
 use serde::Serialize;
+use serde_json::{Value, json};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -29,4 +30,13 @@ impl Verdict {
 pub fn deliver(json: Option<&Path>, text: &str, schema: u32, figures: &impl Serialize) -> Result<()> {
     print_beside(json, text)?;
     json.map_or(Ok(()), |target| write_figures(schema, figures, target))
+}
+
+/// The fields of `figures`, and those of the object `more`.
+pub fn extended(figures: &impl Serialize, more: Value) -> Value {
+    let mut figures = json!(figures);
+    if let (Some(figures), Value::Object(more)) = (figures.as_object_mut(), more) {
+        figures.extend(more);
+    }
+    figures
 }

@@ -1,5 +1,6 @@
-//! The shaders' text: valid for naga, with the host's memory layout.
+//! The shaders' text: valid for naga (and for tint, if installed), with the host's memory layout.
 
+use crate::common::gpu::skip;
 use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use weekender::job::render::SamplerKind;
@@ -78,6 +79,34 @@ fn every_kernel_is_translated_for_direct3d() {
             }
         }
     }
+}
+
+/// tint is another browser's compiler. No package system that we know of has it, so its absence is only reported unless
+/// `WEEKENDER_REQUIRE_TINT=1`.
+#[test]
+fn tint_accepts_every_shader() {
+    if let Err(error) = std::process::Command::new("tint").arg("--version").output() {
+        return skip("TINT", &format!("no shader was shown to tint, which cannot be run: {error}"));
+    }
+    // An invalid shader fails, so tint really checks the others.
+    assert!(!run_tint("fn broken( {", &[]).status.success());
+    for entry_point in EntryPoint::ALL {
+        for values in variants() {
+            let values: Vec<String> = values.iter().map(|(name, value)| format!("{name}={value}")).collect();
+            let output = run_tint(&source(entry_point), &values);
+            let message = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{}: {message}", entry_point.name());
+        }
+    }
+}
+
+/// tint's output for a shader with overrides.
+fn run_tint(text: &str, overrides: &[String]) -> std::process::Output {
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("shader.wgsl");
+    std::fs::write(&file, text).unwrap();
+    let mut tint = std::process::Command::new("tint");
+    tint.args(["--format", "wgsl", "--overrides", &overrides.join(",")]).arg(&file).output().unwrap()
 }
 
 /// The WGSL name of a type.

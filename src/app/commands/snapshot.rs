@@ -1,10 +1,7 @@
-//! What panels get: a snapshot of the window, which they show but do not change, and a place for their requests.
+//! A snapshot of the window for the panels, which show it but do not change it.
 
-use super::table::Command;
 use crate::app::model::{Document, Model};
 use crate::progressive::{Phase, Status, Stop};
-use std::cell::RefCell;
-use std::ops::Deref;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -79,31 +76,5 @@ impl Snapshot {
     /// Why the document's camera has no effect; `None` if it has one.
     pub fn no_rays(&self) -> Option<&'static str> {
         self.document().no_rays()
-    }
-}
-
-/// Everything that a panel needs: the snapshot to show, and a place for its requests.
-pub struct PanelContext {
-    pub snapshot: Snapshot,
-    /// The window carries them out once everything is drawn.
-    pub requests: RefCell<Vec<Command>>,
-}
-
-impl PanelContext {
-    pub fn new(snapshot: Snapshot) -> Self {
-        PanelContext { snapshot, requests: RefCell::default() }
-    }
-
-    /// Requests a command.
-    pub fn send(&self, command: Command) {
-        self.requests.borrow_mut().push(command);
-    }
-}
-
-impl Deref for PanelContext {
-    type Target = Snapshot;
-
-    fn deref(&self) -> &Snapshot {
-        &self.snapshot
     }
 }

@@ -5,7 +5,7 @@ use crate::app::model::{Device, Document};
 use crate::app::toolkit::menu::menus;
 use crate::app::toolkit::theme;
 use crate::app::toolkit::widgets::{add_command, command_switch, named};
-use eframe::egui::{self, Align, Atom, Button, Layout, Margin, RichText, Ui, ViewportCommand, vec2};
+use eframe::egui::{self, Align, Atom, Button, Layout, Margin, Rect, RichText, Ui, ViewportCommand, vec2};
 
 const HEIGHT: f32 = 48.0;
 
@@ -97,13 +97,18 @@ fn stage(ui: &mut Ui, cx: &PanelContext) {
     };
     let changed = if document.is_changed() && width >= 140.0 { " · changed" } else { "" };
     // The title is cut before "changed" is.
-    let atoms = (Atom::grow(), RichText::new(title).strong(), changed, Atom::grow(), "⏷");
+    let room_for_triangle = Atom::custom(egui::IdSalt::new("triangle"), vec2(12.0, 8.0));
+    let atoms = (Atom::grow(), RichText::new(title).strong(), changed, Atom::grow(), room_for_triangle);
     let button = Button::new(atoms).gap(0.0).min_size(vec2(width, 24.0)).truncate();
     let sized = ui.scope(|ui| {
         ui.set_max_width(width);
         add_command(ui, cx, Command::Stages, button)
     });
-    named(&sized.inner, "Choose a stage");
+    let response = sized.inner;
+    let corner = response.rect.right_center() - vec2(14.0, 0.0);
+    let icon = Rect::from_center_size(corner, vec2(9.0, 9.0));
+    egui::collapsing_header::paint_default_icon(ui, 1.0, &response.clone().with_new_rect(icon));
+    named(&response, "Choose a stage");
     step(ui, cx, Command::NextStage, "›");
 }
 

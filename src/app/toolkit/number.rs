@@ -259,8 +259,8 @@ mod tests {
         assert_eq!(point_words(DVec3::ZERO), "0, 0, 0");
         assert_eq!([1, 2].map(samples_words), ["1 sample per pixel", "2 samples per pixel"]);
         let number = Number::new(About::new("", ""), -9.0..=9.0);
-        assert_eq!([-0.695_65, 2.087_12].map(|n| number.text(n)), ["−0.6957", "2.0871"]);
+        assert_eq!([-0.695_66, 2.087_12].map(|n| number.text(n)), ["−0.6957", "2.0871"]);
         let beside = Number { scale: 2.0, ..number.letter("x ") };
-        assert_eq!([-0.695_65, 2.087_12].map(|n| beside.text(n)), ["−0.696", "2.0871"]);
+        assert_eq!([-0.695_66, 2.087_12].map(|n| beside.text(n)), ["−0.696", "2.0871"]);
     }
 }

@@ -25,20 +25,26 @@ pub enum AnswerKind {
     CannotCheck,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+/// In JSON, the fields have the names of the lines of the text.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Answer {
     pub kind: AnswerKind,
     /// The mistake, or the outcome of the check. Neither this nor the other texts end with a full stop.
+    #[serde(rename = "verdict")]
     pub title: String,
     /// One sentence.
     pub explanation: String,
     /// What to change.
+    #[serde(rename = "change")]
     pub remedy: Option<String>,
     /// Where the book explains what went wrong.
+    #[serde(rename = "read")]
     pub section: Option<Section>,
     /// The stage that the picture shows.
+    #[serde(skip)]
     pub stage: Option<&'static Stage>,
     /// Figures and observations, one per line.
+    #[serde(rename = "seen")]
     pub evidence: Vec<String>,
     /// Column and row of a few places where it differs from ours by more than noise, the worst first.
     pub places: Vec<[u32; 2]>,
@@ -46,12 +52,14 @@ pub struct Answer {
     pub damages: Vec<Damage>,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Section {
     /// Such as "9.5".
+    #[serde(rename = "section")]
     pub number: &'static str,
     pub url: String,
     /// The stage of this section, or the last one before it.
+    #[serde(skip)]
     pub stage: &'static Stage,
 }
 

@@ -8,10 +8,11 @@ use crate::job::render::{RenderSettings, Renderer, SamplerKind, Viewport};
 use crate::render_cpu::{CpuOptions, CpuRenderer};
 use crate::stages::Stage;
 use anyhow::{Result, bail};
+use serde::Serialize;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// A common mistake in programs that follow the book, or another way to be right.
-#[derive(Debug)]
+#[derive(Debug, Serialize)]
 pub struct Mistake {
     pub id: &'static str,
     /// The section of the book to reread.
@@ -19,10 +20,12 @@ pub struct Mistake {
     pub title: &'static str,
     pub remedy: &'static str,
     /// Whether it can show in a picture of this recipe.
+    #[serde(skip)]
     pub applies: fn(&Recipe) -> bool,
     /// Whether it is another way to be right.
     pub is_right: bool,
     /// Each makes one variant of the mistake out of another picture.
+    #[serde(skip)]
     pub changes: &'static [fn(&mut Hypothesis)],
 }
 
@@ -41,8 +44,9 @@ impl Mistake {
 }
 
 /// A number that explains the reader's picture.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Number {
+    #[serde(skip)]
     pub what: What,
     pub value: f64,
     /// One standard deviation.

@@ -292,14 +292,14 @@ impl Search<'_> {
         let shared = applying_to(&finding.right.hypothesis.recipe).find(|mistake| mistake.id == SHARED);
         let shared = shared.and_then(|shared| shared.pictures(&finding.right.hypothesis).pop());
         let seen = self.seen(&finding.right.hypothesis.written, None);
-        let guess = match shared.filter(|shared| is_shared(&seen, &finding.right, shared, self.studio.stop)) {
-            Some(hypothesis) => Some(Compared { hypothesis, ..finding.right.clone() }),
-            None => {
-                let wrong = compared.into_iter().filter(|it| !it.hypothesis.is_right());
-                let nearest = wrong.min_by(|a, b| a.fit.excess.total_cmp(&b.fit.excess));
-                nearest.filter(|it| it.fit.excess < FAR.min(EXPLAINED * finding.right.fit.excess))
-            }
-        };
+        let wrong = compared.into_iter().filter(|it| !it.hypothesis.is_right());
+        let nearest = wrong.min_by(|a, b| a.fit.excess.total_cmp(&b.fit.excess));
+        let nearest = nearest.filter(|it| it.fit.excess < FAR.min(EXPLAINED * finding.right.fit.excess));
+        let guess = nearest.or_else(|| {
+            let hypothesis =
+                shared.filter(|shared| is_shared(&seen, &finding.right, shared, self.studio.stop))?;
+            Some(Compared { hypothesis, ..finding.right.clone() })
+        });
         ensure!(!self.studio.stop.load(Ordering::Relaxed), "the check was stopped");
         if let Some(guess) = guess {
             (finding.stage, finding.found) = (guess.hypothesis.stage, Some(guess));
@@ -360,7 +360,7 @@ impl Search<'_> {
         near.sort_by(|a, b| key(a).cmp(&key(b)).then(a.0.total_cmp(&b.0)));
         let limit = 1.5 * near.first().map_or(0.0, |(excess, _)| excess.max(0.0)) + 3.0 * FINE_MOST;
         near.retain(|(excess, _)| *excess < limit);
-        near.dedup_by(|(a, _), (b, _)| a == b);
+        near.dedup_by(|(a, it), (b, other)| a == b && is_same(it, other));
         near.truncate(COMPARED[2]);
         let mut limit = f64::INFINITY;
         for (excess, hypothesis) in near {
@@ -603,25 +603,33 @@ fn is_same(a: &Hypothesis, b: &Hypothesis) -> bool {
     id(a) == id(b) && numbers(a) == numbers(b)
 }
 
-/// The right pictures on which mistakes are tried: of each of the nearest sections the nearest one, and that of the book.
+/// The right pictures on which mistakes are tried: of the nearest section the nearest one, its scene written as the book does,
+/// and the book's; of the next sections one.
 fn bases(nearest: &[Hypothesis], ranked: &[(f64, Hypothesis)]) -> Vec<Hypothesis> {
     let mut bases: Vec<Hypothesis> = Vec::new();
-    let all = nearest.iter().chain(ranked.iter().map(|(_, it)| it).filter(|it| it.is_right()));
-    for it in all.filter(|it| is_simple(it)) {
-        let of_stage = || {
-            ranked.iter().map(|(_, it)| it).filter(|other| other.is_right() && other.stage.id == it.stage.id)
-        };
-        let stages: HashSet<&str> = bases.iter().map(|base| base.stage.id).collect();
-        if stages.contains(it.stage.id) {
+    let rights = || ranked.iter().filter(|(_, it)| it.is_right() && is_simple(it));
+    for stage in nearest.iter().chain(rights().map(|(_, it)| it)).map(|it| it.stage.id) {
+        if bases.len() >= BASES || bases.iter().any(|base| base.stage.id == stage) {
             continue;
         }
-        let scene =
-            of_stage().filter(|other| other.written == it.written).min_by_key(|other| other.rows.len());
-        let book = of_stage().find(|other| other.rows.is_empty());
-        for it in [it].into_iter().chain(scene.into_iter().chain(book).filter(|_| stages.is_empty())) {
+        let of_stage = || rights().filter(|(_, it)| it.stage.id == stage);
+        let book = || of_stage().map(|(_, it)| it).find(|it| it.rows.is_empty());
+        let own: Vec<&Hypothesis> = if bases.is_empty() {
+            let all = || nearest.iter().chain(rights().map(|(_, it)| it));
+            let first = all().find(|it| it.stage.id == stage && is_simple(it));
+            let as_written = of_stage()
+                .map(|(_, it)| it)
+                .filter(|it| first.is_some_and(|first| first.written == it.written));
+            first.into_iter().chain(as_written.min_by_key(|it| it.rows.len())).chain(book()).collect()
+        } else {
+            // An edition must be nearer than the book.
+            let key = |(misfit, it): &(f64, Hypothesis)| misfit * if it.rows.is_empty() { 1.0 } else { 1.5 };
+            of_stage().min_by(|a, b| key(a).total_cmp(&key(b))).map(|(_, it)| it).into_iter().collect()
+        };
+        for it in own {
             let is_same =
                 |other: &Hypothesis| other.is_traced_as(it) && other.written.curve == it.written.curve;
-            if bases.len() < BASES && !bases.iter().any(is_same) {
+            if !bases.iter().any(is_same) {
                 bases.push(it.clone());
             }
         }
@@ -647,15 +655,15 @@ fn is_written_otherwise(it: &Hypothesis, base: &Hypothesis) -> bool {
     it.is_traced_as(base) && it.added.is_none()
 }
 
-/// Mean squared difference of small pictures in displayed values, without the noise of ours.
+/// Mean squared difference of small pictures in displayed values. The two halves of ours have independent noise, so that it adds
+/// nothing.
 fn rough(seen: &[[f64; 3]], rendered: &Rendered, most: f64) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
-    let mean = rendered.mean();
-    let ours = mean.as_flattened().iter().zip(rendered.error.as_flattened());
-    for (value, (ours, noise)) in seen.as_flattened().iter().zip(ours) {
-        let ours = ours.clamp(0.0, most);
-        let roots = (value.max(0.02).sqrt() + ours.max(0.02).sqrt()).powi(2);
-        let square = ((value - ours).powi(2) - noise) / roots;
+    let [first, second] = rendered.halves.each_ref().map(|half| half.as_flattened());
+    for ((value, first), second) in seen.as_flattened().iter().zip(first).zip(second) {
+        let [first, second] = [first, second].map(|ours| ours.clamp(0.0, most));
+        let roots = (value.max(0.02).sqrt() + f64::midpoint(first, second).max(0.02).sqrt()).powi(2);
+        let square = (value - first) * (value - second) / roots;
         if square.is_finite() {
             // What differs in a part of the picture must not look like another curve of all of it.
             sum += square.min(ROUGH_MOST);

@@ -28,7 +28,7 @@ pub use mine::Mine;
 pub use mistakes::MISTAKES;
 pub use watch::{POLL_INTERVAL, Watched};
 
-use super::answer::{Verdict, deliver};
+use super::answer::{Verdict, deliver, extended};
 use crate::batch::aligned;
 use crate::cli::{CheckOptions, check_outputs};
 use crate::numbers::heat::HeatScale;
@@ -197,30 +197,13 @@ pub fn text(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf], is_c
 fn figures(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> serde_json::Value {
     let answer = finding.answer(mine);
     let explains = &finding.found.as_ref().unwrap_or(&finding.right).hypothesis;
-    let id = |it: &Hypothesis| it.named().filter(|_| it.numbers.is_empty()).map(|named| named.id);
-    let mistake = explains.named().filter(|_| explains.numbers.is_empty()).map(|mistake| {
-        json!({
-            "id": mistake.id,
-            "section": mistake.section,
-            "title": mistake.title,
-            "remedy": mistake.remedy,
-            "note": explains.note,
-            "explains_all": finding.is_sure,
-            "is_right": mistake.is_right,
-            "also": finding.alike.iter().filter_map(id).collect::<Vec<_>>(),
-        })
+    let named = |it: &Hypothesis| it.named().filter(|_| it.numbers.is_empty());
+    let mistake = named(explains).map(|mistake| {
+        let also = finding.alike.iter().filter_map(named).map(|also| also.id).collect::<Vec<_>>();
+        extended(mistake, json!({ "note": explains.note, "explains_all": finding.is_sure, "also": also }))
     });
-    let numbers = explains.numbers.iter().map(|number| {
-        json!({
-            "words": number.words,
-            "value": number.value,
-            "deviation": number.deviation,
-            "right": number.right,
-            "section": number.section,
-            "code": number.code,
-        })
-    });
-    json!({
+    let variants = finding.right.hypothesis.rows.iter().filter(|row| row.is_right).map(|row| row.id);
+    let more = json!({
         "picture": path.display().to_string(),
         "format": mine.format,
         "width": mine.width,
@@ -229,20 +212,14 @@ fn figures(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> se
         "stage": finding.stage.id,
         "section": finding.stage.section,
         "is_right": answer.verdict() == Verdict::Same,
-        "verdict": answer.title,
-        "kind": answer.kind,
-        "explanation": answer.explanation,
-        "change": answer.remedy,
-        "read": answer.section.map(|section| json!({ "section": section.number, "url": section.url })),
-        "seen": answer.evidence,
-        "places": answer.places,
         "mistake": mistake,
-        "numbers": numbers.collect::<Vec<_>>(),
-        "variants": finding.right.hypothesis.rows.iter().filter(|row| row.is_right).map(|row| row.id).collect::<Vec<_>>(),
+        "numbers": explains.numbers,
+        "variants": variants.collect::<Vec<_>>(),
         "samples": finding.samples(),
         "damages": mine.damages,
         "files": files.iter().map(|path| path.display().to_string()).collect::<Vec<_>>(),
-    })
+    });
+    extended(&answer, more)
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use super::fit::Compared;
 use super::hypothesis::Hypothesis;
 use super::tracer::Tracer;
 use super::written::Seen;
+use glam::DVec2;
 use std::collections::HashSet;
 use std::sync::atomic::AtomicBool;
 
@@ -94,33 +95,39 @@ const VARIANCE_LEAST: f64 = 3e-3;
 /// Number of pictures with shared random numbers that the reader's is compared with.
 const REALISATIONS: u32 = 4;
 
-/// How far the reader's may be from them: more samples have less noise, so the steps of bytes show.
-const LIKE: [f64; 2] = [0.6, 2.2];
+/// How far the reader's smoothness and evenness may be from theirs. A generator that some paths ask more often than others makes
+/// neighbours differ more; noise that is independent is smooth by no less than 100.
+const LIKE: [[f64; 2]; 2] = [[0.3, 8.0], [0.6, 2.2]];
 
-/// How smooth the difference of two pictures is, and how evenly it is spread: each a ratio, in noisy blocks.
+/// How smooth the difference of a picture from ours is, and how evenly it is spread: each a ratio, in noisy blocks. The two halves
+/// of ours have independent noise, so that it adds nothing.
 fn texture(right: &Compared, width: usize, value: impl Fn(usize, usize) -> f64) -> [f64; 2] {
     let (mut means, mut near, mut relatives) = (0.0, 0.0, Vec::new());
     let height = right.rendered.variance.len() / width;
     for y0 in (0..height / SIDE).map(|y| y * SIDE) {
         for x0 in (0..width / SIDE).map(|x| x * SIDE) {
             for channel in 0..3 {
-                let (mut sum, mut noise, mut apart) = (0.0, 0.0, 0.0);
+                let left = |pixel: usize| {
+                    let of = |half: &Vec<[f64; 3]>| value(pixel, channel) - half[pixel][channel];
+                    DVec2::from(right.rendered.halves.each_ref().map(of))
+                };
+                let (mut sum, mut noise, mut apart) = (DVec2::ZERO, 0.0, 0.0);
                 for y in y0..y0 + SIDE {
                     for x in x0..x0 + SIDE {
                         let pixel = y * width + x;
-                        sum += value(pixel, channel);
+                        sum += left(pixel);
                         noise += right.rendered.variance[pixel][channel];
                         if x + 1 < x0 + SIDE {
-                            apart += (value(pixel + 1, channel) - value(pixel, channel)).powi(2);
+                            apart += (left(pixel + 1) - left(pixel)).element_product();
                         }
                     }
                 }
                 let count = (SIDE * SIDE) as f64;
-                let mean = sum / count;
-                if noise / count > VARIANCE_LEAST / 3.0 && (mean + apart).is_finite() {
-                    means += mean * mean;
+                let square = sum.element_product() / (count * count);
+                if noise / count > VARIANCE_LEAST / 3.0 && (square + apart).is_finite() {
+                    means += square;
                     near += apart / count;
-                    relatives.push(mean * mean * count / noise);
+                    relatives.push(square * count / noise);
                 }
             }
         }
@@ -137,18 +144,18 @@ fn texture(right: &Compared, width: usize, value: impl Fn(usize, usize) -> f64) 
 /// generator gives a different picture, so only the texture of the difference is compared.
 pub fn is_shared(seen: &Seen, right: &Compared, shared: &Hypothesis, stop: &AtomicBool) -> bool {
     let Some(steps) = shared.steps else { return false };
-    let (width, mean) = (seen.size[0] as usize, right.rendered.mean());
-    let mine = texture(right, width, |pixel, channel| seen.values[pixel][channel] - mean[pixel][channel]);
+    let width = seen.size[0] as usize;
+    let mine = texture(right, width, |pixel, channel| seen.values[pixel][channel]);
     let tracer = Tracer::new(&shared.recipe, steps, &shared.viewport, 1);
     let others: Vec<[f64; 2]> = (0..REALISATIONS)
         .map(|number| {
             let made = tracer.moments(12 * number..12 * (number + 1), None, stop);
-            texture(right, width, |pixel, channel| made[pixel][0][channel] - mean[pixel][channel])
+            texture(right, width, |pixel, channel| made[pixel][0][channel])
         })
         .collect();
     (0..2).all(|index| {
         let all = others.iter().map(|other| other[index]);
         let [least, most] = all.fold([f64::INFINITY, 0.0], |[a, b], x| [a.min(x), b.max(x)]);
-        (LIKE[0] * least..=LIKE[1] * most).contains(&mine[index])
+        (LIKE[index][0] * least..=LIKE[index][1] * most).contains(&mine[index])
     })
 }

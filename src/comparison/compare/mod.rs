@@ -5,7 +5,7 @@ mod verdict;
 
 pub use verdict::{Comparison, ROUNDING_BIAS, compare, half_differences};
 
-use super::answer::{Verdict, deliver};
+use super::answer::{Verdict, deliver, extended};
 use super::picture::Picture;
 use crate::batch::{Line, aligned, lines};
 use crate::cli::{CompareOptions, check_outputs};
@@ -97,7 +97,6 @@ fn figures(sides: &[Picture; 2], comparison: &Comparison) -> Value {
             "mean_difference": block.means,
         })
     };
-    let mut figures = json!(comparison);
     let more = json!({
         "sides": sides.each_ref().map(|side| json!({ "name": side.name, "about": side.about })),
         "width": sides[0].width,
@@ -113,10 +112,7 @@ fn figures(sides: &[Picture; 2], comparison: &Comparison) -> Value {
         "largest_limit": test.largest_limit,
         "worst_blocks": test.worst(NAMED_BLOCKS).into_iter().map(block).collect::<Vec<_>>(),
     });
-    if let (Some(figures), Value::Object(more)) = (figures.as_object_mut(), more) {
-        figures.extend(more);
-    }
-    figures
+    extended(comparison, more)
 }
 
 #[cfg(test)]

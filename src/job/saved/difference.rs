@@ -65,7 +65,7 @@ mod tests {
         let sky = "the spheres, materials or sky differ";
         let cases: [(Change, &str); 12] = [
             (|recipe| recipe.settings.width = 7, "width is 800 here, 7 there"),
-            (|recipe| recipe.settings.max_depth = 7, "max_depth is 50 here, 7 there"),
+            (|recipe| recipe.settings.max_depth = 7, "max_depth is 24 here, 7 there"),
             (|recipe| recipe.rules.surface = SurfaceRule::Book, "surface is \"exact\" here, \"book\" there"),
             (
                 |recipe| recipe.rules.transfer = Transfer::Linear,

@@ -36,7 +36,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("image", &["job", "comparison", "app"]),
     ("indicatif", &["system", "measure"]),
     ("plotters", &["numbers"]),
-    ("clap", &["system", "job", "cli"]),
+    ("clap", &["system", "job", "cli", "batch"]),
     ("env_filter", &["system"]),
     ("signal_hook", &["system"]),
 ];

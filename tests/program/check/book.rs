@@ -55,16 +55,16 @@ struct HitRecord {
 }
 
 #[derive(Clone, Copy)]
-enum Material {
+pub enum Material {
     Lambertian(DVec3),
     Metal(DVec3, f64),
     Dielectric(f64),
 }
 
-struct Sphere {
-    center: DVec3,
-    radius: f64,
-    mat: Material,
+pub struct Sphere {
+    pub center: DVec3,
+    pub radius: f64,
+    pub mat: Material,
 }
 
 fn reflect(v: DVec3, n: DVec3) -> DVec3 {
@@ -76,12 +76,12 @@ pub struct Book {
     stage: &'static str,
     mistake: &'static str,
     is_edition_3: bool,
-    world: Vec<Sphere>,
-    look_from: DVec3,
+    pub world: Vec<Sphere>,
+    pub look_from: DVec3,
     look_at: DVec3,
-    vfov: f64,
-    defocus_angle: f64,
-    focus_dist: f64,
+    pub vfov: f64,
+    pub defocus_angle: f64,
+    pub focus_dist: f64,
     max_depth: u32,
 }
 

@@ -66,9 +66,10 @@ fn planted_mistakes_are_named() {
     .map(|(stage, mistake)| (stage, mistake, Book::new(stage, mistake)));
     let (stage, mistake) = ("hollow-glass", "last-hit-wins");
     let in_edition_3 = (stage, mistake, Book::of_edition_3(stage, mistake));
+    let of_one_seed = (stage, "same-seed", Book::of_edition_3(stage, "same-seed"));
     let wrong: Vec<String> = planted
         .into_iter()
-        .chain([in_edition_3])
+        .chain([in_edition_3, of_one_seed])
         .filter_map(|(stage, mistake, program)| {
             let mine = made_by(&program, 60, 3);
             let finding =
@@ -118,11 +119,11 @@ fn without_a_stage_no_answer_is_surely_wrong() {
         let named = ids(&finding);
         assert!(!finding.is_sure || named.contains(&mistake), "{stage}, {mistake}: {named:?}");
     }
-    // Even a mistake that changes most of the picture does not hide its stage.
-    let finding =
-        judge(&mine("lambertian-gamma", "sky-reversed", 60, 3), None, &AtomicBool::new(false), |_| {})
-            .unwrap();
-    assert!(finding.is_sure && ids(&finding).contains(&"sky-reversed"), "{:?}", ids(&finding));
+    // Neither a mistake that changes most of the picture nor one that changes what differs between stages hides its stage.
+    for (stage, mistake) in [("lambertian-gamma", "sky-reversed"), ("hollow-glass", "index-inverted")] {
+        let finding = judge(&mine(stage, mistake, 60, 3), None, &AtomicBool::new(false), |_| {}).unwrap();
+        assert!(finding.is_sure && ids(&finding).contains(&mistake), "{mistake}: {:?}", ids(&finding));
+    }
 }
 
 #[test]
