@@ -93,8 +93,10 @@ const UNKNOWN: [(&str, &str); 12] = [
     ("truncated", "lambertian-gamma"),
 ];
 
-/// Numbers that are typed wrong: what must be said, a stage, and the change.
-const NUMBERS: [(&str, &str, fn(&mut Book)); 24] = [
+/// A number that is typed wrong: what must be said, a stage, and the change.
+type Number = (&'static str, &'static str, fn(&mut Book));
+
+const NUMBERS: [Number; 24] = [
     ("the x of the left ball is -1.1", "metal-fuzzy", |it| it.world[2].center.x = -1.1),
     ("the z of the middle ball is -1", "metal-fuzzy", |it| it.world[1].center.z = -1.0),
     ("the y of the ground is -100", "metal-fuzzy", |it| it.world[0].center.y = -100.0),

@@ -24,7 +24,7 @@ pub const QUICK_WIDTH: u32 = 480;
 const QUICK_SAMPLES: u64 = 64;
 
 /// Minimum width of a full still, pixels: almost twice the pixels that most figures are wide.
-const FULL_WIDTH: u32 = 800;
+const FULL_WIDTH: u32 = 720;
 
 /// Samples per pixel of a full still. The estimated error is then at most 0.003, about half an 8-bit step.
 const FULL_SAMPLES: u64 = 1024;

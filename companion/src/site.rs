@@ -28,7 +28,7 @@ pub struct Site {
 }
 
 impl Site {
-    /// Reads everything from the library. Fails with the first [`Fault`] of the texts, or with an error in an embedded
+    /// Reads everything from the library. Fails with the first fault of the texts, or with an error in an embedded
     /// part.
     pub fn read(library: &Library) -> Result<Self> {
         let mut terms: Vec<Entry<Term>> = library.entries(GLOSSARY)?;

@@ -202,7 +202,7 @@ mod tests {
             crate::batch::tests::options(&[&["--samples", "64", "--device", "cpu"], &files[..]].concat());
         let interrupt = Interrupt::unheard();
         let failing = || {
-            Scripted::new(|_, samples, film, _| match samples.end {
+            Scripted::boxed(|_, samples, film, _| match samples.end {
                 0..5 => Ok(film.record(samples, 0)?),
                 _ => Err(RenderError::Backend { backend: "scripted", reason: "it broke".to_owned() }),
             })

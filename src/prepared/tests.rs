@@ -110,6 +110,7 @@ fn on_the_ground() -> RenderJob {
     job.seen_by(camera, *job.settings()).expect("valid")
 }
 
+#[expect(clippy::disallowed_macros, reason = "a failure shows the last name")]
 fn assert_valid(name: &str, job: &RenderJob) {
     println!("{name}");
     PreparedScene::<f32>::new(job).validate(job);

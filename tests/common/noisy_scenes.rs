@@ -1,4 +1,6 @@
-//! Scenes that are hard for a denoiser and for the estimate of its error.
+//! Scenes that are hard for a denoiser and for the estimate of its error, and scenes drawn at random.
+
+#![allow(dead_code, clippy::unwrap_used, reason = "each user needs some of them")]
 
 use glam::DVec3;
 use std::sync::Arc;
@@ -94,4 +96,40 @@ pub fn cage(ball: f64) -> Recipe {
         ..Camera::default()
     };
     recipe("cage", scene, camera, [48, 27])
+}
+
+/// A scene drawn at random: up to 200 spheres of all materials and sizes on a ground, a sky of any brightness, a camera
+/// with or without a lens.
+pub fn random(seed: u64) -> Recipe {
+    let mut random = Random::new(seed + 1);
+    for _ in 0..8 {
+        random.next();
+    }
+    let brightness = 10_f64.powf(random.between(-3.0, 1.5));
+    let colour = |random: &mut Random| DVec3::new(random.next(), random.next(), random.next());
+    let sky = Sky { bottom: brightness * colour(&mut random), top: brightness * colour(&mut random) };
+    let mut scene = Scene { sky, ..Scene::default() };
+    let ground = scene.add_material("ground", Material::Lambertian { albedo: colour(&mut random) });
+    scene.add_sphere(DVec3::new(0.0, -1000.0, 0.0), 1000.0, ground);
+    let size = 10_f64.powf(random.between(-1.3, 0.0));
+    for index in 0..(200.0_f64).powf(random.next()) as usize {
+        let albedo = colour(&mut random);
+        let material = match (4.0 * random.next()) as usize {
+            0 => Material::Dielectric { refraction_index: random.between(1.1, 2.0) },
+            1 => Material::Metal { albedo, fuzz: random.between(-0.5, 1.0).max(0.0) },
+            _ => Material::Lambertian { albedo },
+        };
+        let material = scene.add_material(format!("material {index}"), material);
+        let radius = size * random.between(0.3, 1.0);
+        let at = DVec3::new(random.between(-4.0, 4.0), radius, random.between(-4.0, 4.0));
+        scene.add_sphere(at, radius, material);
+    }
+    let camera = Camera {
+        look_from: DVec3::new(random.between(-3.0, 3.0), random.between(0.5, 5.0), random.between(5.0, 9.0)),
+        look_at: DVec3::new(0.0, 0.3, 0.0),
+        vfov_degrees: random.between(15.0, 60.0),
+        defocus_angle_degrees: random.between(-3.0, 3.0).max(0.0),
+        ..Camera::default()
+    };
+    recipe(&format!("random {seed}"), scene, camera, [200, 112])
 }

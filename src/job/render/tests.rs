@@ -10,7 +10,7 @@ type Pass = dyn FnMut(&RenderJob, Range<u64>, &mut Film, &mut Vec<String>) -> Re
 pub(crate) struct Scripted(Box<Pass>, Vec<String>);
 
 impl Scripted {
-    pub(crate) fn new<P>(pass: P) -> Box<dyn Renderer>
+    pub(crate) fn boxed<P>(pass: P) -> Box<dyn Renderer>
     where
         P: FnMut(&RenderJob, Range<u64>, &mut Film, &mut Vec<String>) -> Result<(), RenderError>
             + Send

@@ -274,7 +274,7 @@ mod tests {
 
     /// Fills pictures with the radiance that the job determines, and warns of scenes with many spheres.
     fn painter(name: &str, radiance: fn(&RenderJob) -> f64) -> Candidate {
-        let painter = Scripted::new(move |job, samples, film, messages| {
+        let painter = Scripted::boxed(move |job, samples, film, messages| {
             let radiance = radiance(job);
             film.record(samples, 0)?;
             for half in 0..2 {
