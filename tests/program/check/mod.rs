@@ -66,10 +66,9 @@ fn planted_mistakes_are_named() {
     .map(|(stage, mistake)| (stage, mistake, Book::new(stage, mistake)));
     let (stage, mistake) = ("hollow-glass", "last-hit-wins");
     let in_edition_3 = (stage, mistake, Book::of_edition_3(stage, mistake));
-    let of_one_seed = (stage, "same-seed", Book::of_edition_3(stage, "same-seed"));
     let wrong: Vec<String> = planted
         .into_iter()
-        .chain([in_edition_3, of_one_seed])
+        .chain([in_edition_3])
         .filter_map(|(stage, mistake, program)| {
             let mine = made_by(&program, 60, 3);
             let finding =
@@ -79,6 +78,9 @@ fn planted_mistakes_are_named() {
         })
         .collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
+    // More samples have less noise than ours.
+    let of_one_seed = Book::new("lambertian-gamma", "same-seed").render(240, 135, 80, 1);
+    assert_eq!(found(&Mine::of_bytes(of_one_seed, [240, 135]), "lambertian-gamma"), "same-seed");
 }
 
 /// Some mistake is always closer than none, but no mistake turns one scene into another.
