@@ -23,7 +23,7 @@ const SET_WIDTH: u32 = 320;
 pub const QUICK_WIDTH: u32 = 480;
 const QUICK_SAMPLES: u64 = 64;
 
-/// Minimum width of a full still, pixels: almost twice the pixels that most figures are wide.
+/// Width of a full still, pixels: more than most figures are wide, and the page is below 6.5 MB.
 const FULL_WIDTH: u32 = 720;
 
 /// Samples per pixel of a full still. The estimated error is then at most 0.003, about half an 8-bit step.
@@ -62,8 +62,7 @@ impl Picture {
         let mut recipe = stage.recipe();
         if !stage.setup.is_about_pixels {
             let (settings, samples) = (&mut recipe.settings, &mut recipe.samples_per_pixel);
-            let width =
-                if is_quick { settings.width.min(QUICK_WIDTH) } else { settings.width.max(FULL_WIDTH) };
+            let width = if is_quick { settings.width.min(QUICK_WIDTH) } else { FULL_WIDTH };
             settings.height = (settings.height * width).div_ceil(settings.width);
             settings.width = width;
             // A stage with one sample sends it through the pixel's centre; more would be the same.
@@ -195,7 +194,7 @@ mod tests {
                 (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel)
             })
         };
-        assert_eq!(sizes("book"), [(480, 270, 64), (1200, 675, 1024)]);
-        assert_eq!(sizes("sky"), [(480, 270, 1), (800, 450, 1)]);
+        assert_eq!(sizes("book"), [(480, 270, 64), (720, 405, 1024)]);
+        assert_eq!(sizes("sky"), [(480, 270, 1), (720, 405, 1)]);
     }
 }
