@@ -4,7 +4,7 @@ use crate::figure::Figure;
 use crate::library::FOLDER;
 use crate::lists;
 use crate::live;
-use crate::picture::Picture;
+use crate::picture::{Part, Picture};
 use crate::pictures;
 use crate::prose::Place;
 use crate::site::Site;
@@ -69,16 +69,6 @@ fn part(words: &[&str]) -> Result<Part> {
 fn numbers<T: FromStr>(words: &[&str]) -> Result<[T; 4]> {
     let numbers: Result<Vec<T>, _> = words.iter().map(|word| word.parse()).collect();
     numbers.ok().and_then(|numbers| numbers.try_into().ok()).context("give four numbers")
-}
-
-/// A second picture below a panel's, or the part that pictures in a row show.
-#[derive(Clone, Copy)]
-pub enum Part {
-    None,
-    /// A part, enlarged: left, top, width and height in the stage's pixels.
-    Crop([u32; 4]),
-    /// The stage seen from the same eye: a point to look at, and the field of view in degrees.
-    Aim([f64; 4]),
 }
 
 /// Pictures narrower than this are enlarged with every pixel a square. (A reduced picture must not be shown so: its edges

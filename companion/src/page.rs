@@ -5,7 +5,7 @@ use crate::check;
 use crate::directive;
 use crate::library::Fault;
 use crate::live;
-use crate::picture::Picture;
+use crate::picture::{Part, Picture};
 use crate::prose;
 use crate::site::Site;
 use crate::uses::Uses;
@@ -120,7 +120,7 @@ fn document(site: &Site, content: &Markup) -> Result<Markup, Fault> {
 /// `live` pictures can run, and `drawn` diagrams be dragged.
 fn cover(live: usize, drawn: usize, is_quick: bool, uses: &mut Uses) -> Result<Markup> {
     let stage = cover_stage();
-    let panel = directive::panel(stage, None, directive::Part::None, Some(&Picture::small(stage)), uses)?;
+    let panel = directive::panel(stage, None, Part::None, Some(&Picture::small(stage)), uses)?;
     Ok(html! {
         header .cover {
             p .kicker { "Weekender, the companion" }

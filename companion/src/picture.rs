@@ -1,6 +1,5 @@
 //! A picture of the page: a stage's still, or another that the page makes of a stage.
 
-use crate::directive::Part;
 use anyhow::{Context, Result};
 use maud::{Markup, html};
 use std::collections::BTreeSet;
@@ -54,6 +53,16 @@ pub enum Tracer {
     Plain(Option<&'static Mistake>),
     Fast,
     Denoised,
+}
+
+/// A second picture below a panel's, or the part that pictures in a row show.
+#[derive(Clone, Copy)]
+pub enum Part {
+    None,
+    /// A part, enlarged: left, top, width and height in the stage's pixels.
+    Crop([u32; 4]),
+    /// The stage seen from the same eye: a point to look at, and the field of view in degrees.
+    Aim([f64; 4]),
 }
 
 impl Picture {

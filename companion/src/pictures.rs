@@ -1,8 +1,7 @@
 //! The page's own pictures beside the gallery's stills: what common mistakes look like, as `weekender check` renders
 //! them, and a picture before and after denoising.
 
-use crate::directive::Part;
-use crate::picture::{Picture, QUICK_WIDTH, Tracer};
+use crate::picture::{Part, Picture, QUICK_WIDTH, Tracer};
 use crate::uses::Uses;
 use crate::words::{numbered, typographic};
 use anyhow::{Context, Result};
