@@ -603,8 +603,8 @@ fn is_same(a: &Hypothesis, b: &Hypothesis) -> bool {
     id(a) == id(b) && numbers(a) == numbers(b)
 }
 
-/// The right pictures on which mistakes are tried: of the nearest section the nearest one, its scene written as the book does,
-/// and the book's; of the next sections one.
+/// The right pictures on which mistakes are tried: of the nearest section the nearest one, the plainest that is written in the
+/// same way, and the book's; of each further section one.
 fn bases(nearest: &[Hypothesis], ranked: &[(f64, Hypothesis)]) -> Vec<Hypothesis> {
     let mut bases: Vec<Hypothesis> = Vec::new();
     let rights = || ranked.iter().filter(|(_, it)| it.is_right() && is_simple(it));

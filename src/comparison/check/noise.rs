@@ -95,8 +95,8 @@ const VARIANCE_LEAST: f64 = 3e-3;
 /// Number of pictures with shared random numbers that the reader's is compared with.
 const REALISATIONS: u32 = 4;
 
-/// How far the reader's smoothness and evenness may be from theirs. A generator that some paths ask more often than others makes
-/// neighbours differ more; noise that is independent is smooth by no less than 100.
+/// How far the reader's smoothness and evenness may be from theirs. Paths of different lengths draw different numbers of random
+/// numbers, so neighbours fall out of step and differ more; with independent noise, the smoothness is about 100.
 const LIKE: [[f64; 2]; 2] = [[0.3, 8.0], [0.6, 2.2]];
 
 /// How smooth the difference of a picture from ours is, and how evenly it is spread: each a ratio, in noisy blocks. The two halves
