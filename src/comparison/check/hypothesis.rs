@@ -156,6 +156,11 @@ impl Hypothesis {
         self.traced == other.traced && self.recipe == other.recipe && self.viewport == other.viewport
     }
 
+    /// Whether only its bytes may be others.
+    pub fn is_written_unlike(&self, other: &Hypothesis) -> bool {
+        self.is_traced_as(other) && self.added.is_none()
+    }
+
     /// Whether nothing in it is wrong.
     pub fn is_right(&self) -> bool {
         self.numbers.is_empty() && self.rows.iter().all(|row| row.is_right)

@@ -202,10 +202,9 @@ impl Search<'_> {
             }
         };
         let mut enough = Vec::new();
-        for hypothesis in near().filter(|it| !it.is_right()).take(COMPARED[0]) {
-            if hypothesis.written.wraps && !self.has_wrapped(&right) {
-                continue;
-            }
+        let wrapped = variants(&right.hypothesis).filter(|it| it.written.wraps && self.has_wrapped(&right));
+        let wrapped: Vec<_> = wrapped.collect();
+        for hypothesis in near().filter(|it| !it.is_right()).take(COMPARED[0]).chain(&wrapped) {
             let found = self.compared(hypothesis)?;
             if found.fit.is_enough() {
                 enough.push(found);
@@ -462,10 +461,9 @@ impl Search<'_> {
         // As in the book's first sections.
         let mut early = best.hypothesis.clone();
         early.written.levels = 255.999;
-        let rows = applying_to(&early.recipe).filter(|it| it.is_right);
-        let others: Vec<_> = rows.flat_map(|it| it.pictures(&best.hypothesis)).collect();
+        let others: Vec<_> = variants(&best.hypothesis).filter(Hypothesis::is_right).collect();
         for other in [early].into_iter().chain(others) {
-            let is_level = is_written_otherwise(&other, &best.hypothesis)
+            let is_level = other.is_written_unlike(&best.hypothesis)
                 && other.written.curve == best.hypothesis.written.curve;
             if is_level && !best.fit.is_enough() {
                 let fit = fit(&other, &best.rendered);
@@ -519,61 +517,33 @@ impl Search<'_> {
         (self.say)("comparing with all sections and editions".to_owned());
         let size = [self.mine.width, self.mine.height];
         let factor = factor(size, SMALL_WIDTH);
-        let mut known: Vec<(Written, Vec<[f64; 3]>)> = Vec::new();
-        let (mut ranked, has_zeros) = (Vec::new(), self.mine.has_zeros());
+        let (mut ranked, mut known) = (Vec::new(), Vec::<(Written, Vec<[f64; 3]>)>::new());
         for stage in stages {
             let right = Hypothesis::right(stage, common(stage), size);
-            let editions =
-                applying_to(&right.recipe).filter(|it| it.is_right).flat_map(|it| it.pictures(&right));
-            let editions: Vec<Hypothesis> = editions.filter(|it| !it.is_traced_as(&right)).collect();
-            for base in [right].into_iter().chain(editions) {
-                let mut tiny = |of: &Hypothesis| {
-                    small(&mut self.studio, of, factor, SMALL[usize::from(of.steps.is_some())])
+            let editions = variants(&right).filter(|it| it.is_right() && !it.is_traced_as(&right));
+            for base in [right.clone()].into_iter().chain(editions) {
+                let is_written_otherwise = |it: &Hypothesis| match it.written.order.exchanges_sides() {
+                    true => size[0] != size[1] && base.rows.is_empty(),
+                    false => it.is_written_unlike(&base) && it.written.levels == base.written.levels,
                 };
-                let others = applying_to(&base.recipe).flat_map(|it| it.pictures(&base));
-                let is_other = |it: &Hypothesis| {
-                    it.written.levels == base.written.levels
-                        && it.added.is_none()
-                        && (it.is_traced_as(&base) || it.written.order.exchanges_sides())
-                };
-                let others: Vec<Hypothesis> =
-                    others.filter(is_other).filter(|it| has_zeros || !it.written.wraps).collect();
-                let rendered = tiny(&base)?;
-                let exchanged = match others.iter().find(|it| it.written.order.exchanges_sides()) {
-                    Some(other) if size[0] != size[1] && base.rows.is_empty() => Some(tiny(other)?),
-                    _ => None,
-                };
-                for hypothesis in [base].into_iter().chain(others) {
+                let others = variants(&base).filter(|it| is_written_otherwise(it) && !it.written.wraps);
+                let samples = SMALL[usize::from(base.steps.is_some())];
+                let as_base = small(&mut self.studio, &base, factor, samples)?;
+                for hypothesis in [base.clone()].into_iter().chain(others) {
                     let written = hypothesis.written;
-                    let of =
-                        if written.order.exchanges_sides() { exchanged.as_ref() } else { Some(&rendered) };
-                    let Some(rendered) = of else { continue };
-                    if written.wraps {
-                        let mean =
-                            enlarged(&rendered.mean(), size.map(|side| side as usize), factor as usize);
-                        let seen = self.seen(&written, Some(&mean));
-                        let values = reduced(&seen.values, seen.size[0] as usize, factor as usize);
-                        ranked.push((rough(&values, rendered, written.linear(255, 0, 1)[0]), hypothesis));
-                        continue;
-                    }
+                    let rendered = match hypothesis.is_traced_as(&base) {
+                        true => &as_base,
+                        false => &small(&mut self.studio, &hypothesis, factor, samples)?,
+                    };
                     let place = known.iter().position(|(known, _)| *known == written).unwrap_or_else(|| {
                         let seen = self.seen(&written, None);
                         known.push((written, reduced(&seen.values, seen.size[0] as usize, factor as usize)));
                         known.len() - 1
                     });
-                    // What holds the same values is not written otherwise.
-                    let is_same = |(other, values): &(Written, Vec<[f64; 3]>)| {
-                        *other != written
-                            && other.curve == written.curve
-                            && !written.wraps
-                            && is_equal(values, &known[place].1)
-                    };
-                    if hypothesis.is_right() || !known[..place].iter().any(is_same) {
-                        ranked.push((
-                            rough(&known[place].1, rendered, written.linear(255, 0, 1)[0]),
-                            hypothesis,
-                        ));
-                    }
+                    ranked.push((
+                        rough(&known[place].1, rendered, written.linear(255, 0, 1)[0]),
+                        hypothesis,
+                    ));
                 }
             }
         }
@@ -644,15 +614,9 @@ fn is_simple(it: &Hypothesis) -> bool {
     })
 }
 
-/// Whether two small pictures are equal.
-fn is_equal(a: &[[f64; 3]], b: &[[f64; 3]]) -> bool {
-    let is_same = |(a, b): (&f64, &f64)| a == b || a.is_nan() && b.is_nan();
-    a.len() == b.len() && a.as_flattened().iter().zip(b.as_flattened()).all(is_same)
-}
-
-/// Whether only the bytes of two pictures differ.
-fn is_written_otherwise(it: &Hypothesis, base: &Hypothesis) -> bool {
-    it.is_traced_as(base) && it.added.is_none()
+/// All that can be done otherwise than in this picture.
+fn variants(of: &Hypothesis) -> impl Iterator<Item = Hypothesis> {
+    applying_to(&of.recipe).flat_map(|it| it.pictures(of))
 }
 
 /// Mean squared difference of small pictures in displayed values. The two halves of ours have independent noise, so that it adds
