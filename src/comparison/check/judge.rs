@@ -38,14 +38,17 @@ const MASK_WIDTH: u32 = 80;
 const NUMBERED: usize = 2;
 const NUMBERS: usize = 3;
 
-/// Right pictures that are compared in full size, mistakes that are tried on better small pictures, and of these in full size.
-const COMPARED: [usize; 3] = [6, 20, 7];
+/// Right pictures that are compared in full size, mistakes that are tried on better small pictures, and of these in full size:
+/// if the best may be enough, and if it may only be a guess.
+const COMPARED: [usize; 4] = [6, 20, 7, 2];
 
 /// Samples per pixel of a mistake on a small picture: of each, and of those that are near.
 const SCREENED: [u64; 2] = [8, 64];
 
-/// Mean square of the blocks' means, in bytes, below which a mistake may only show in single pixels.
+/// Mean square of the blocks' means, in bytes, below which a mistake may only show in single pixels; and what a small picture
+/// of the right hypothesis may leave.
 const FINE_MOST: f64 = 4.0;
+const ENOUGH_MOST: f64 = 3.0 * FINE_MOST;
 
 /// Bases on which mistakes are tried.
 const BASES: usize = 6;
@@ -324,9 +327,12 @@ impl Search<'_> {
             for mistake in applying_to(&base.recipe).filter(|it| !it.is_right && it.id != SHARED) {
                 for hypothesis in mistake.pictures(base) {
                     if hypothesis.added.is_some() || hypothesis.written.blackens || hypothesis.is_fine {
-                        let is_possible = match hypothesis.is_fine {
-                            true => rank == 0 && right.fit.excess < FINE_MOST,
-                            false => !hypothesis.written.blackens || self.mine.has_zeros(),
+                        let is_possible = if hypothesis.is_fine {
+                            rank == 0 && right.fit.excess < FINE_MOST
+                        } else if hypothesis.written.blackens {
+                            self.mine.has_zeros()
+                        } else {
+                            screen.brightened() < EXPLAINED * nothing + FINE_MOST
                         };
                         if is_nearest && is_possible {
                             whole.push(hypothesis);
@@ -357,10 +363,10 @@ impl Search<'_> {
         // Of those that are as near, what differs less from the book comes first.
         let key = |(excess, it): &(f64, Hypothesis)| ((excess.max(0.0) / FINE_MOST) as u64, it.rows.len());
         near.sort_by(|a, b| key(a).cmp(&key(b)).then(a.0.total_cmp(&b.0)));
-        let limit = 1.5 * near.first().map_or(0.0, |(excess, _)| excess.max(0.0)) + 3.0 * FINE_MOST;
-        near.retain(|(excess, _)| *excess < limit);
+        let least = near.first().map_or(0.0, |(excess, _)| excess.max(0.0));
+        near.retain(|(excess, _)| *excess < FAR.min(1.5 * least + ENOUGH_MOST));
         near.dedup_by(|(a, it), (b, other)| a == b && is_same(it, other));
-        near.truncate(COMPARED[2]);
+        near.truncate(COMPARED[if least < ENOUGH_MOST { 2 } else { 3 }]);
         let mut limit = f64::INFINITY;
         for (excess, hypothesis) in near {
             if excess < limit {
@@ -396,8 +402,12 @@ impl Search<'_> {
         (self.say)(format!("trying the numbers of {} {}", stage.section, stage.title));
         let seen = self.seen(&base.written, None);
         let more = screen.one_more(&mut self.studio, best)?;
-        for start in &more {
-            compared.push(self.with_numbers(&seen, base, start)?);
+        for (rank, start) in more.iter().enumerate() {
+            // What leaves more is at most a guess, as the best may be.
+            let limit = if rank == 0 { FAR } else { ENOUGH_MOST };
+            if lowest(screen.excess(&mut self.studio, &start.at, SCREENED[1])?) < limit {
+                compared.push(self.with_numbers(&seen, base, start)?);
+            }
         }
         if let Some(next) = more.into_iter().next() {
             *best = next;
@@ -540,10 +550,7 @@ impl Search<'_> {
                         known.push((written, reduced(&seen.values, seen.size[0] as usize, factor as usize)));
                         known.len() - 1
                     });
-                    ranked.push((
-                        rough(&known[place].1, rendered, written.linear(255, 0, 1)[0]),
-                        hypothesis,
-                    ));
+                    ranked.push((rough(&known[place].1, rendered, written.linear(255, 0, 1)[0]), hypothesis));
                 }
             }
         }

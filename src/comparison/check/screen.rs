@@ -103,6 +103,23 @@ impl Screen {
         (0..values.len()).map(rest).map(|x| if x.is_finite() { x } else { 0.0 }).collect()
     }
 
+    /// The mean square of what the base leaves if it is as bright as fits best, in bytes.
+    pub fn brightened(&self) -> f64 {
+        let pairs = self.values.as_flattened().iter().zip(self.mean.as_flattened());
+        // A value at the top of its range is only a lower bound.
+        let known = || {
+            pairs
+                .clone()
+                .zip(self.weights(true))
+                .filter(|((value, _), weight)| **value < 0.98 * self.most && *weight > 0.0)
+        };
+        let sum = |of: &dyn Fn(f64, f64) -> f64| {
+            known().map(|((value, mean), weight)| weight * of(*value, *mean)).sum::<f64>()
+        };
+        let factor = sum(&|value, mean| value * mean) / sum(&|_, mean| mean * mean);
+        16.0 * sum(&|value, mean| (value - factor * mean).powi(2)) / known().count() as f64
+    }
+
     /// The mean square of what is left beyond noise, in bytes, and its deviation.
     pub fn excess(&mut self, studio: &mut Studio, of: &Hypothesis, samples: u64) -> Result<[f64; 2]> {
         let [a, b] = self.halves(studio, of, samples)?;
