@@ -24,7 +24,7 @@ fn stages() -> Vec<Stage> {
 }
 
 /// The recipe of a stage with a reader's settings.
-fn recipe_of(stage: &Stage, told: &Value) -> Recipe {
+pub fn recipe_of(stage: &Stage, told: &Value) -> Recipe {
     let mut recipe = stage.recipe();
     let mut scene = (*recipe.scene).clone();
     let data = data_of(&[*stage]);
@@ -35,6 +35,7 @@ fn recipe_of(stage: &Stage, told: &Value) -> Recipe {
     recipe.scene = Arc::new(scene);
     recipe.camera = camera_of(&told["camera"]);
     recipe.settings.max_depth = told["depth"].as_u64().unwrap() as u32;
+    recipe.samples_per_pixel = told["samples"].as_u64().unwrap();
     recipe
 }
 
