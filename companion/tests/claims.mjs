@@ -1,15 +1,15 @@
 // What the text says of each link that sets a picture: the link, words beside it, and what must hold of the picture
-// `now` that it makes, compared with `was`, the same with the stage's own settings and as many samples.
+// `now` that it makes, compared with `was`, the same with the stage's own settings.
 
-// A picture of bytes, 480 pixels wide, of which parts are given as shares: left, top, right, bottom.
+// A picture of bytes in base64, 480 pixels wide, of which parts are given as shares: left, top, right, bottom.
 export class Picture {
   constructor({ width, height, data }) {
-    Object.assign(this, { width, height, data });
+    Object.assign(this, { width, height, data: Buffer.from(data, "base64") });
   }
 
   at(x, y) {
     const place = 4 * (Math.min(y, this.height - 1) * this.width + Math.min(x, this.width - 1));
-    return this.data.slice(place, place + 3);
+    return [...this.data.subarray(place, place + 3)];
   }
 
   // The mean of a value of each pixel of a part.

@@ -83,9 +83,12 @@ async function live(id) {
 
 async function keepFilm(id, name) {
   await finished(id);
-  const file = `film-${name}.bin`;
+  const file = `film-${name}.bin`, own = await settings(id);
   writeFileSync(join(folder, file), Buffer.from(await page.evaluate(readFilm), "base64"));
-  seen.films[name] = { file, id, settings: await settings(id) };
+  // The text is written with the picture.
+  await until("the picture", async () => (await bar(id)).includes(`${own.samples} of ${own.samples}`));
+  const rgba = await panel(id).locator("canvas").first().evaluate((canvas) => [...canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data]);
+  seen.films[name] = { file, id, rgba, settings: own };
 }
 
 async function drag(id, right, down) {

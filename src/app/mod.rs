@@ -242,13 +242,4 @@ mod tests {
             assert_eq!(<[f32; 2]>::from(found), expected, "{monitor:?} {scale} {is_first}");
         }
     }
-
-    #[test]
-    fn draws_with_the_requested_renderer_and_prefers_a_gpu() {
-        use eframe::Renderer::{Glow, Wgpu};
-        assert_eq!([DrawWith::Wgpu, DrawWith::Gl].map(renderers), [&[Wgpu], &[Glow]]);
-        let has_gpu = model::device::adapter().is_ok_and(|adapter| !adapter.is_software);
-        let expected = if has_gpu { [Wgpu, Glow] } else { [Glow, Wgpu] };
-        assert_eq!(renderers(DrawWith::Auto), expected);
-    }
 }

@@ -220,34 +220,3 @@ impl Step {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::stages::Stage;
-
-    #[test]
-    fn sentences_name_angles_and_chance() {
-        let sentence = |stage: &str, direction: DVec3, is_outside: bool, lobe: Lobe| {
-            let job = Stage::find(stage).unwrap().recipe().job().unwrap();
-            let hit = Some(Hit { sphere: 0, point: DVec3::ZERO, normal: DVec3::Y, is_outside });
-            let (origin, throughput, event) = (DVec3::ZERO, DVec3::ONE, Event::Scattered(lobe));
-            Step { origin, direction, throughput, hit, event }.sentence(&job)
-        };
-        let at_60 = DVec3::new(0.75_f64.sqrt(), -0.5, 0.0);
-        let at_30 = DVec3::new(0.5, -(0.75_f64.sqrt()), 0.0);
-        // Rounding may make a unit vector slightly longer.
-        let along = 1.000_001 * DVec3::NEG_Y;
-        let mirror = sentence("metal", along, true, Lobe::Metal { mirrored: DVec3::Y, fuzz: 0.0 });
-        assert!(mirror.contains(" at 0° "), "{mirror}");
-        for (stage, is_outside, refracted, parts) in [
-            ("glass-schlick", true, Some(at_30), ["60°", "12.5 % reflect; the coin is 0.750", "30°"]),
-            ("glass-tir", false, None, ["inside", "60°", "total reflection"]),
-        ] {
-            let (mirrored, reflectance, coin) = (DVec3::Y, 0.125, 0.75);
-            let lobe = Lobe::Glass { mirrored, refracted, reflectance, coin, refracts: refracted.is_some() };
-            let found = sentence(stage, at_60, is_outside, lobe);
-            assert!(parts.iter().all(|part| found.contains(part)), "{found}");
-        }
-    }
-}

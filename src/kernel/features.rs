@@ -277,31 +277,3 @@ fn has_steep_glass(job: &RenderJob) -> bool {
             _ => false,
         })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn general_kernel_keeps_sample_features() {
-        let own = Features { specks: true, surface: SurfaceRule::Book, ..Features::default() };
-        let special =
-            Features { lambertian: false, few_spheres: true, opaque_count: 3, suspends: false, ..own };
-        assert_eq!(special.generalised(), own);
-        let hemisphere = Features { hemisphere: true, hierarchy: true, lens: false, ..own };
-        assert_eq!(hemisphere.generalised(), Features { lens: true, ..hemisphere });
-    }
-
-    #[test]
-    fn feature_without_its_part_is_off() {
-        let own =
-            Features { specks: true, surface: SurfaceRule::Book, opaque_count: 3, ..Features::default() };
-        let without = own.in_kernel::<{ parts::GLASS }>();
-        assert_eq!(
-            (without.specks(), without.surface(), without.opaque_count()),
-            (false, SurfaceRule::Exact, 3)
-        );
-        let with = own.in_kernel::<{ parts::EXTREMES | parts::RULES }>();
-        assert_eq!((with.specks(), with.surface(), with.opaque_count()), (true, SurfaceRule::Book, 3));
-    }
-}

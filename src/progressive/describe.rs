@@ -83,24 +83,6 @@ fn camera_text(camera: &Camera) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec3;
-
-    #[test]
-    fn camera_text_has_all_numbers() {
-        let (look_from, look_at) = (DVec3::new(3.0, 1.0, 0.5), DVec3::new(3.0, 4.0, 4.5));
-        let camera = Camera { look_from, look_at, vfov_degrees: 20.0, ..Camera::BOOK };
-        let camera = Camera { defocus_angle_degrees: 0.6, focus_distance: Some(10.0), ..camera };
-        let text = "from 3,1,0.5 to 3,4,4.5, vfov 20 degrees, defocus 0.6 degrees, focus at ";
-        assert_eq!(camera_text(&camera), format!("{text}10"));
-        // A lens without its own focus distance focuses on `look_at`.
-        assert_eq!(camera_text(&Camera { focus_distance: None, ..camera }), format!("{text}5"));
-    }
-
-    #[test]
-    fn times_are_short() {
-        let found = [0.0, 59.4, 59.6, 245.0, 7385.0, 1e7].map(seconds);
-        assert_eq!(found, ["0.0 s", "59.4 s", "1 min 00 s", "4 min 05 s", "2 h 03 min", "115 days"]);
-    }
 
     #[test]
     fn the_film_says_how_many_samples_it_has() {

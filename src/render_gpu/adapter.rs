@@ -216,15 +216,4 @@ pub(crate) mod tests {
             assert!(pair[0].rank() < pair[1].rank(), "{pair:?}");
         }
     }
-
-    #[test]
-    fn only_software_counts_iterations_of_threads_in_step() {
-        // Registers of the processor hold at least 8 threads, and no more than 64 are known.
-        for (subgroup_size, expected) in [(0, 8), (4, 8), (8, 8), (16, 16), (64, 64), (128, 64)] {
-            let software = AdapterInfo { subgroup_size, ..adapter("software", "Vulkan", true, None) };
-            assert_eq!((software.threads_in_step(), software.busy_threads()), (expected, 4096));
-            let gpu = AdapterInfo { subgroup_size, ..adapter("discrete GPU", "Vulkan", false, None) };
-            assert_eq!((gpu.threads_in_step(), gpu.busy_threads()), (1, u64::MAX));
-        }
-    }
 }

@@ -358,31 +358,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_step_of_caution_shortens_dispatches_eightfold() {
-        let limits = |iteration_limit: u32, suspends: bool| {
-            [0, 1, 2, 3].map(|caution| {
-                let dispatches = Dispatches {
-                    slots: Vec::new(),
-                    in_flight: VecDeque::new(),
-                    last_done: Instant::now(),
-                    budgets: HashMap::new(),
-                    target: Duration::ZERO,
-                    iteration_limit,
-                    caution,
-                    shortfall: None,
-                    count: 0,
-                    time: Duration::ZERO,
-                };
-                dispatches.iteration_limit(&Features { suspends, ..Features::default() })
-            })
-        };
-        assert_eq!(limits(5120, true), [5120, 640, 80, 10]);
-        assert_eq!(limits(100, true), [100, 12, 1, 1]);
-        // A kernel that cannot suspend paths has to trace them to their ends.
-        assert_eq!(limits(5120, false), [5120; 4]);
-    }
-
-    #[test]
     fn each_tile_has_a_workgroup() {
         for count in [1, GROUPS_ACROSS, GROUPS_ACROSS + 1, 3 * GROUPS_ACROSS - 1, 1 << 22] {
             let [x, y] = groups(count);

@@ -156,21 +156,3 @@ fn least_aligned(w: DVec3) -> DVec3 {
 pub(super) fn unit(v: DVec3) -> DVec3 {
     (v / v.abs().max_element()).normalize()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lens_radius_follows_defocus_angle() {
-        // Half of 90 degrees has the tangent 1, and half of 120 that of 60 degrees.
-        for (angle, distance, radius) in
-            [(90.0, 3.0, 3.0), (120.0, 2.0, 2.0 * 3.0_f64.sqrt()), (0.0, 5.0, 0.0)]
-        {
-            let camera =
-                Camera { defocus_angle_degrees: angle, focus_distance: Some(distance), ..Camera::BOOK };
-            assert!((camera.lens_radius() - radius).abs() < 1e-12, "{angle}: {}", camera.lens_radius());
-            assert!((camera.defocus_tangent() * distance - radius).abs() < 1e-12, "{angle}");
-        }
-    }
-}

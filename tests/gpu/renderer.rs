@@ -1,18 +1,14 @@
 //! The whole GPU renderer: known radiance, odd sizes, films continued by another backend, failures.
 
 use crate::common::films::{parted, rendered};
-use crate::common::gpu::program::{Program, Programs};
 use crate::common::gpu::{cpu, go_on, gpu, job_of, three_spheres};
 use glam::DVec3;
-use weekender::film::Film;
-use weekender::job::render::{Control, RenderError, RenderJob, RenderSettings, Renderer, SamplerKind, Stats};
-use weekender::kernel::{GpuDispatch, Tag, WORKGROUP_SIZE};
+use weekender::job::render::{Control, RenderError, RenderSettings, Renderer, SamplerKind, Stats};
 use weekender::prepared::PreparedScene;
-use weekender::render_gpu::shader_source::EntryPoint;
 use weekender::render_gpu::{GpuError, GpuOptions, GpuRenderer, adapters};
 use weekender::scene::builtin::{BOOK_CAMERA, BuiltinScene, field};
 use weekender::scene::{Camera, Scene, Sky};
-use weekender::stages::{Stage, Transfer};
+use weekender::stages::Stage;
 
 #[test]
 fn software_adapter_needs_permission() {
@@ -126,41 +122,6 @@ fn new_film_gets_no_old_samples() {
     assert!(film != expected);
     let mut fresh = crate::common::gpu::gpu(GpuOptions::default()).unwrap();
     assert!(film == rendered(&mut fresh, &other, 4));
-}
-
-/// The picture of a film, one word per pixel, red in the lowest byte, by the shader that live figures use.
-fn resolved(programs: &Programs, job: &RenderJob, film: &Film, transfer: Transfer) -> Vec<u32> {
-    let pixels = film.width() * film.height();
-    let sums: Vec<u64> = (0..pixels as usize).flat_map(|pixel| film.pixel_sum(pixel).0).collect();
-    let dispatch = GpuDispatch {
-        row_count: film.height(),
-        sample_count: film.sample_count() as u32,
-        transfer: transfer.tag(),
-        ..GpuDispatch::default()
-    };
-    let text = EntryPoint::Resolve.text();
-    let program = Program { text, entry_point: "resolve", overrides: Vec::new() };
-    let workgroups = pixels.div_ceil(WORKGROUP_SIZE);
-    programs.run(job, &program, dispatch, &sums, &vec![0; pixels as usize], workgroups)
-}
-
-#[test]
-fn resolve_matches_film() {
-    let Some(programs) = Programs::open() else { return };
-    let job = three_spheres([64, 37], 8);
-    let film = rendered(&mut cpu(), &job, 8);
-    for transfer in [Transfer::Linear, Transfer::Gamma2, Transfer::LinearAboveGamma2] {
-        let picture = resolved(&programs, &job, &film, transfer);
-        let expected = film.to_rgb8(transfer);
-        let mut apart = 0;
-        for (word, rgb) in picture.iter().zip(expected.chunks_exact(3)) {
-            let bytes = word.to_le_bytes();
-            assert_eq!(bytes[3], 255);
-            assert!(bytes.iter().zip(rgb).all(|(a, b)| a.abs_diff(*b) <= 1), "{bytes:?} {rgb:?}");
-            apart += bytes.iter().zip(rgb).filter(|(a, b)| a != b).count();
-        }
-        assert!(apart < 80, "{apart} bytes of {} are a step apart", expected.len());
-    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Pictures rendered in ranges of samples, each into a film of its own, and their merge.
 
-use crate::common::program::{ends, film, json, succeeds, weekender};
+use crate::common::program::{ends, film, json, succeeds};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -80,23 +80,6 @@ fn damaged_film_is_moved_aside_and_rendered_again() {
     fs::write(at.join("d.exr"), "").unwrap();
     succeeds(at, &part("0..4", "d.exr"));
     assert!(film(&at.join("d.exr")) == good);
-}
-
-/// As when a scheduler starts a task again on another machine while the first one still runs.
-#[cfg(unix)]
-#[test]
-fn second_run_on_a_film_is_refused() {
-    use crate::common::program::{signal, until};
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    let part = [&part("0..4294967296", "a.exr")[..], &["--every", "0.1s"]].concat();
-    let mut first = weekender(at, &part).stdout(std::process::Stdio::null()).spawn().unwrap();
-    until("the film is not written", || at.join("a.exr").exists());
-    let (_, message) = ends(at, 2, &part);
-    assert!(message.contains("a.exr is locked"), "{message}");
-    signal(&first, "TERM");
-    assert_eq!(first.wait().unwrap().code(), Some(143));
-    assert!(film(&at.join("a.exr")).sample_count() > 0);
 }
 
 /// Runs a line in a shell. Returns standard output and standard error.

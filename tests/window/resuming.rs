@@ -4,7 +4,7 @@ use crate::harness::{has_samples, open, save, send, until};
 use crate::questions::Ask as _;
 use crate::recovered::held;
 use std::path::Path;
-use weekender::app::{Command, Window};
+use weekender::app::Command;
 use weekender::film::checkpoint;
 use weekender::progressive::Stop;
 
@@ -53,26 +53,6 @@ fn resumed_film_follows_the_flags() {
     // Without a stop condition of its own, it continues as the picture usually would.
     let harness = open(&resume);
     assert_eq!(harness.state().shown_document().stop, Stop { noise: Some(Stop::NOISE), ..Stop::default() });
-}
-
-/// Also where a fresh document of the stage is made.
-#[test]
-fn a_long_render_is_there_again_when_one_comes_back() {
-    let mut harness = open("--stage metal --samples 8 --device cpu");
-    let is_done = |window: &Window| has_samples(8)(window) && window.status().phase.is_over();
-    for (there, back) in [(Command::NextStage, Command::PreviousStage), (Command::NextStage, Command::Undo)] {
-        until(&mut harness, "the end", is_done);
-        let samples = harness.state().status().samples_per_pixel;
-        harness.state_mut().tracing.main.seconds_before = Some(60.0);
-        send(&mut harness, there);
-        until(&mut harness, "another picture", has_samples(1));
-        assert_eq!(harness.state().shown_document().stage().unwrap().id, "metal-fuzzy");
-        send(&mut harness, back);
-        until(&mut harness, "its samples", is_done);
-        assert_eq!(harness.state().shown_document().stage().unwrap().id, "metal");
-        assert_eq!(held(harness.state()), samples, "{back:?}: nothing was traced again");
-        assert!(harness.state().tracing.main.seconds().unwrap() >= 60.0);
-    }
 }
 
 /// Here a pass takes a second, whose end the next picture waits for.

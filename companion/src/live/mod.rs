@@ -112,9 +112,6 @@ fn stage_data(stage: &Stage) -> Result<Value> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec3;
-    use weekender::scene::{Camera, Material, Scene};
-    use weekender::stages::Setup;
 
     #[test]
     fn stage_data_matches_recipe() {
@@ -127,24 +124,6 @@ mod tests {
             let [from, at] =
                 [setup.camera.look_from, setup.camera.look_at].map(|point| json!(point.to_array()));
             assert_eq!([&data["camera"]["from"], &data["camera"]["at"]], [&from, &at], "{}", stage.id);
-        }
-    }
-
-    #[test]
-    fn distant_scene_has_own_origin() {
-        const AWAY: DVec3 = DVec3::new(4096.0, 0.0, -65_536.0);
-        let near = Stage::find("normals").unwrap();
-        let scene = || {
-            let mut scene = Scene::default();
-            let matte = scene.add_material("matte", Material::Lambertian { albedo: DVec3::splat(0.5) });
-            scene.add_sphere(AWAY + DVec3::NEG_Z, 0.5, matte);
-            scene
-        };
-        let book = Camera::BOOK;
-        let camera = Camera { look_from: AWAY + book.look_from, look_at: AWAY + book.look_at, ..book };
-        let far = Stage { setup: Setup { scene, camera, ..near.setup }, ..*near };
-        for (stage, origin) in [(near, DVec3::ZERO), (&far, AWAY)] {
-            assert_eq!(stage_data(stage).unwrap()["origin"], json!(origin.to_array()));
         }
     }
 }

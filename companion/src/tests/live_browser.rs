@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;
-use weekender::film::{Film, PixelSum};
+use weekender::film::{Film, PixelSum, to_byte};
 use weekender::job::recipe::{Recipe, file::to_toml};
 use weekender::job::saved::open;
 use weekender::stages::Stage;
@@ -24,7 +24,7 @@ fn stages() -> Vec<Stage> {
 }
 
 /// The recipe of a stage with a reader's settings.
-fn recipe_of(stage: &Stage, told: &Value) -> Recipe {
+pub fn recipe_of(stage: &Stage, told: &Value) -> Recipe {
     let mut recipe = stage.recipe();
     let mut scene = (*recipe.scene).clone();
     let data = data_of(&[*stage]);
@@ -35,6 +35,7 @@ fn recipe_of(stage: &Stage, told: &Value) -> Recipe {
     recipe.scene = Arc::new(scene);
     recipe.camera = camera_of(&told["camera"]);
     recipe.settings.max_depth = told["depth"].as_u64().unwrap() as u32;
+    recipe.samples_per_pixel = told["samples"].as_u64().unwrap();
     recipe
 }
 
@@ -109,6 +110,24 @@ fn a_browser_renders_the_films_of_the_program() {
     compare_films(&directory, &stages, seen["films"].as_object().unwrap());
 }
 
+/// The picture on the screen is the film's, as the program resolves it. Where a value is close to a step, rounding decides.
+fn check_picture(name: &str, stage: &Stage, film: &[PixelSum], told: &Value) {
+    let (width, height) = (stage.setup.width as usize, stage.setup.height as usize);
+    let samples = told["settings"]["samples"].as_f64().unwrap();
+    let rgba: Vec<u8> = serde_json::from_value(told["rgba"].clone()).unwrap();
+    assert_eq!(rgba.len(), 4 * film.len(), "{name}");
+    let mut apart = 0;
+    for (pixel, (shown, sum)) in rgba.as_chunks::<4>().0.iter().zip(film).enumerate() {
+        let byte = |x: f64| to_byte(x / samples, stage.setup.rules.transfer, pixel / width, height);
+        let [red, green, blue] = sum.radiance().map(byte);
+        let expected = [red, green, blue, 255];
+        let by = [0, 1, 2, 3].map(|i| usize::from(expected[i].abs_diff(shown[i])));
+        assert!(by.iter().all(|by| *by <= 1), "{name}, pixel {pixel}: {shown:?}, not {expected:?}");
+        apart += by.iter().sum::<usize>();
+    }
+    assert!(apart <= film.len() / 20, "{name}: {apart} bytes are a step apart");
+}
+
 /// The films of the browser and of the program are equal to the bit: on one adapter, under two compilers.
 fn compare_films(directory: &Path, stages: &[Stage], films: &serde_json::Map<String, Value>) {
     assert_eq!(films.len(), Stage::ALL.len() + 2);
@@ -123,6 +142,7 @@ fn compare_films(directory: &Path, stages: &[Stage], films: &serde_json::Map<Str
         let sums = &program.halves()[0];
         let differing = browser.iter().zip(sums).filter(|(a, b)| a != b).count();
         assert_eq!((differing, browser.len()), (0, sums.len()), "{name}: pixels that differ");
+        check_picture(name, stage, &browser, told);
         rendered.push((name.clone(), browser));
     }
     let film_of = |name: &str| &rendered.iter().find(|film| film.0 == name).unwrap().1;

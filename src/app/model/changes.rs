@@ -204,17 +204,6 @@ mod tests {
         assert!(changes.earlier(&document).is_none());
     }
 
-    #[test]
-    fn changes_that_keep_the_film_can_be_undone() {
-        let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
-        let mut changes = Changes::new(document.clone());
-        document.stop.seconds = Some(7.0);
-        assert!(!follow(&mut changes, &context, &document, false), "the film stays the same");
-        assert!(changes.earlier(&document).is_some());
-        changes.undo(&mut document);
-        assert_eq!(document.stop.seconds, None);
-    }
-
     /// Presses or releases the button of the pointer.
     fn press(context: &Context, pressed: bool) {
         let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);

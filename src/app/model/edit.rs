@@ -175,17 +175,6 @@ mod tests {
     }
 
     #[test]
-    fn the_names_of_further_materials_are_numbered_on() {
-        let mut scene = scene();
-        assert_eq!(free_name(&scene, "glass-2"), "glass-2");
-        scene.add_material("glass-2", METAL);
-        assert_eq!(free_name(&scene, "glass-2"), "glass-3");
-        assert_eq!(free_name(&scene, "glass"), "glass-3");
-        scene.add_material("dark-blue", METAL);
-        assert_eq!(free_name(&scene, "dark-blue"), "dark-blue-2", "a word is not a number");
-    }
-
-    #[test]
     fn spheres_are_added_and_deleted() {
         let before = scene();
         let body = Body { center: DVec3::Z, radius: 0.25, material: METAL };
@@ -242,15 +231,5 @@ mod tests {
         // A name that says nothing of the kind stays.
         let body = Body { material: METAL, ..Body::of(&before, 0).unwrap() };
         assert_eq!(names(&applied(Edit::Change(0, body), &before).0), ["grey", "glass"]);
-    }
-
-    #[test]
-    fn a_shared_material_stays_until_its_last_sphere_is_deleted() {
-        let before = scene();
-        let (once, _) = applied(Edit::Delete(1), &before);
-        assert_eq!((once.materials.len(), once.spheres.len()), (2, 2));
-        assert_eq!([0, 1].map(|index| Body::of(&once, index)), [0, 2].map(|index| Body::of(&before, index)));
-        let (twice, _) = applied(Edit::Delete(1), &once);
-        assert_eq!((twice.materials.len(), Body::of(&twice, 0)), (1, Body::of(&before, 0)));
     }
 }

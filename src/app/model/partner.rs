@@ -147,10 +147,4 @@ mod tests {
             );
         }
     }
-
-    #[test]
-    fn devices_trace_the_same_film() {
-        let mine = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-        assert!(of(Partner::Device(Device::Reference), &mine).has_same_film(&mine));
-    }
 }

@@ -57,31 +57,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_new_picture_has_the_same_texture() {
-        let context = Context::default();
-        let first = Texture::new([2, 2], &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], None);
-        let (square, smooth) = (TextureOptions::NEAREST, TextureOptions::LINEAR);
-        let id = first.id(&context, square);
-        let known = |id| context.tex_manager().read().meta(id).map(|meta| (meta.size, meta.options));
-        assert_eq!(known(id), Some(([2, 2], square)));
-        context.tex_manager().write().take_delta().clear();
-        assert_eq!(first.id(&context, smooth), id);
-        let mut uploaded = context.tex_manager().write().take_delta();
-        assert!(
-            uploaded
-                .set
-                .iter()
-                .any(|(at, delta)| *at == id && delta.iter().any(|delta| delta.options == smooth)),
-            "it is smoothed at once"
-        );
-        uploaded.clear();
-        let second = Texture::new([1, 3], &[0; 9], Some(first));
-        assert_eq!(second.id(&context, smooth), id);
-        assert_eq!(known(id).map(|(size, _)| size), Some([1, 3]));
-        context.tex_manager().write().take_delta().clear();
-    }
-
-    #[test]
     fn a_picture_that_is_too_wide_for_the_device_is_shown_smaller() {
         let context = Context::default();
         let limit = context.input(|input| input.max_texture_side) as u32;

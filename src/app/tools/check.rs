@@ -412,22 +412,6 @@ mod tests {
     }
 
     #[test]
-    fn files_that_are_not_pictures_get_an_answer() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("notes.txt");
-        old_file(&path, b"no picture");
-        let (mut check, mut remembered) = (Check::default(), Remembered::default());
-        check.begin(&egui::Context::default(), &path, None);
-        check.follow(&egui::Context::default(), &mut remembered);
-        assert!(check.is_open() && remembered.tab == Tab::Check);
-        answered(&mut check, &mut remembered);
-        assert!(remembered.recent.is_empty());
-        let Checked { answer, .. } = check.shown.as_ref().unwrap();
-        assert_eq!(answer.kind, AnswerKind::CannotCheck);
-        assert!(answer.explanation.contains("notes.txt"), "{}", answer.explanation);
-    }
-
-    #[test]
     fn a_changed_picture_is_checked_again() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("mine.ppm");

@@ -140,20 +140,3 @@ fn excerpt_ui(ui: &mut Ui, excerpt: &Excerpt) {
         ui.add(Label::new(RichText::new(excerpt.text.trim_end()).monospace().line_height(Some(18.0))).wrap());
     });
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_code_of_a_stage_is_what_is_new_since_the_section_before() {
-        let texts = |id: &str| {
-            let excerpts = excerpts_of(Stage::find(id).unwrap());
-            excerpts.iter().map(|excerpt| format!("{} {}", excerpt.file, excerpt.first)).collect::<Vec<_>>()
-        };
-        let [far, near] = ["view-distant", "view-close"].map(|id| Stage::find(id).unwrap());
-        assert_eq!(far.section, near.section);
-        assert_eq!(texts("view-distant"), texts("view-close"), "two stages of one section");
-        assert!(!texts("glass-schlick").is_empty());
-    }
-}

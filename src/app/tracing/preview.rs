@@ -235,12 +235,4 @@ mod tests {
         assert_eq!(steps(2e7), [20, 8, 4, 2, 1]);
         assert_eq!(steps(1e5), [20, 1]);
     }
-
-    #[test]
-    fn the_coarsest_preview_leaves_a_hundred_pixels_or_an_eighth() {
-        for (size, divisor) in [([1000, 400], 10), ([700, 400], 8), ([100, 900], 9), ([80, 60], 8)] {
-            assert_eq!(coarsest(&document("book", size)), divisor, "{size:?}");
-            assert_eq!(longer_side(&document("book", size)), size[0].max(size[1]));
-        }
-    }
 }

@@ -95,22 +95,4 @@ mod tests {
         assert_eq!(document.camera.vfov_degrees, 44.0);
         assert!(view.is_denoised && view.tone.exposure == 1.0, "what was chosen meanwhile stays");
     }
-
-    #[test]
-    fn another_view_or_picture_ends_a_sight() {
-        let (stage, mut document) = stage("metal");
-        let (mut view, mut placement) = (ViewState::default(), Placement::default());
-        let sight = Sight::show(stage, &mut document, &mut view, &mut placement);
-        assert!(sight.lasts(&document, &view) && sight.is_of(&document));
-        let mut other = view.clone();
-        other.choose(if view.show() == Show::Normals { Show::Albedo } else { Show::Normals });
-        assert!(!sight.lasts(&document, &other));
-        for mode in [Mode::Difference, Mode::Flip] {
-            let mut other = view.clone();
-            other.toggle(mode);
-            assert!(!sight.lasts(&document, &other));
-        }
-        let again = Document::new(Origin::of_stage(stage));
-        assert!(!sight.lasts(&again, &view) && !sight.is_of(&again));
-    }
 }

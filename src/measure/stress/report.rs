@@ -226,11 +226,9 @@ impl StressReport {
 mod tests {
     use super::super::{cases, with_far_spheres};
     use super::*;
-    use crate::backends::BackendChoice;
     use crate::film::fixed_point;
     use crate::job::render::RenderJob;
     use crate::job::render::tests::Scripted;
-    use crate::render_cpu::CpuOptions;
 
     /// A small case of one ball.
     fn small(expected: Expected) -> Case {
@@ -240,28 +238,6 @@ mod tests {
         case.twin = matches!(expected, Expected::Same(_)).then(|| with_far_spheres(&case.recipe, 1.0));
         case.claim.expected = expected;
         case
-    }
-
-    #[test]
-    fn case_covers_all_backends_and_forms() {
-        let options = CpuOptions { threads: Some(1), ..CpuOptions::default() };
-        let mut suite = Suite::new(vec![
-            Candidate::new("cpu", BackendChoice::Cpu(options)),
-            Candidate::new("f64", BackendChoice::Reference { threads: Some(1) }),
-        ]);
-        let mut run = |expected| suite.run(&small(Expected::Every(expected)), &AtomicBool::new(false));
-        let report = run(0.5);
-        let all = report.measured.iter().chain(&report.book);
-        let who: Vec<_> = all.map(|m| (m.backend.as_str(), m.form.as_str())).collect();
-        let [cpu, exact] = ["cpu", "f64"];
-        let own = [(cpu, "plain"), (exact, "plain"), (cpu, "+40"), (exact, "+40")];
-        assert_eq!(who, [&own[..], &[("f32", "book"), ("f64", "book")]].concat());
-        assert!(report.is_right() && report.measured[0].mean == Some(0.5), "{report:#?}");
-        let report = run(0.6);
-        assert!(report.measured.iter().all(|measured| !measured.verdict.is_right()), "{report:#?}");
-        assert!(report.text().contains("cpu, plain: off by -1.0e-1"), "{}", report.text());
-        let report = StressReport { interrupted: true, cases: vec![report], ..StressReport::default() };
-        assert!(!report.is_right() && report.summary(3).contains("2 cases not run"));
     }
 
     fn is_far(job: &RenderJob) -> bool {

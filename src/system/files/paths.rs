@@ -113,17 +113,6 @@ mod tests {
     use std::path::Path;
 
     #[test]
-    fn shown_paths_are_one_line_without_control_characters() {
-        assert_eq!(Path::new("Köln/a\nb\u{1b}[31m.png").shown(), "Köln/a\\nb\\u{1b}[31m.png");
-        #[cfg(unix)]
-        {
-            use std::os::unix::ffi::OsStrExt;
-            let path = Path::new(OsStr::from_bytes(b"d\xff/a\n.png"));
-            assert_eq!(path.shown(), "d\u{fffd}/a\\n.png");
-        }
-    }
-
-    #[test]
     fn only_an_absolute_variable_chooses_the_directory() {
         let here = env::current_dir().unwrap();
         let [state, home] = ["state", "home"].map(|name| here.join(name));

@@ -136,21 +136,6 @@ mod tests {
         assert!(read(&directory.path().join("x"), "a list", 1).is_err());
     }
 
-    #[test]
-    fn only_regular_files_are_opened() {
-        let directory = tempfile::tempdir().unwrap();
-        let message = open(directory.path()).unwrap_err().to_string();
-        assert!(message.contains("is a directory, but a file is needed"), "{message}");
-        #[cfg(unix)]
-        {
-            let socket = directory.path().join("socket");
-            let _listener = std::os::unix::net::UnixListener::bind(&socket).unwrap();
-            for path in [Path::new("/dev/zero"), &socket] {
-                assert!(open(path).unwrap_err().to_string().contains("a file is needed"), "{path:?}");
-            }
-        }
-    }
-
     /// The system reports a length of 0 for this file.
     #[cfg(target_os = "linux")]
     #[test]

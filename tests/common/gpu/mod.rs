@@ -1,8 +1,6 @@
 //! Helpers that the GPU tests share.
 #![allow(dead_code, reason = "each test uses some of it")]
 
-pub mod program;
-
 pub use crate::common::skip::skip;
 use std::cell::RefCell;
 use std::sync::atomic::AtomicBool;

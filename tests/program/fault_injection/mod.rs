@@ -8,5 +8,4 @@
 mod common;
 mod limits;
 mod outputs;
-mod ranges;
 mod signals;

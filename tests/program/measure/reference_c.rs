@@ -69,7 +69,7 @@ fn check(name: &str, job: &RenderJob, samples: u64) {
 #[test]
 fn pictures_are_the_same() {
     let of_book = job("three-spheres");
-    check("three-spheres", &of_book, 512);
+    check("three-spheres", &of_book, 256);
     check("book", &job("book"), 64);
     for fuzz in [0.25, 0.6] {
         let job =
