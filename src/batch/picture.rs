@@ -124,17 +124,14 @@ fn outcome(
     let Phase::Failed(reason) = &status.phase else {
         return if failures.is_empty() { Ok(()) } else { Err(Failure::Run(anyhow!(failures))) };
     };
-    let held = film.filter(|_| !written.files.is_empty()).map_or(0, Film::sample_count);
-    let kept = |path: &Path| Some((checkpoint::read_head(path).ok()?.samples.count(), path.shown()));
-    Err(match options.checkpoint().and_then(kept) {
+    let files: Vec<String> = written.files.iter().map(ShownPath::shown).collect();
+    let now = film.filter(|_| !files.is_empty()).map(|film| (film.sample_count(), files.join(", ")));
+    let before = |path: &Path| Some((checkpoint::read_head(path).ok()?.samples.count(), path.shown()));
+    Err(match now.or_else(|| before(options.checkpoint()?)) {
         _ if !failures.is_empty() => Failure::Run(anyhow!("{reason}; {failures}")),
-        _ if held > 0 => {
-            let files = written.files.iter().map(ShownPath::shown).collect::<Vec<_>>().join(", ");
-            Failure::BrokeOff(anyhow!(
-                "{reason}; the {held} samples per pixel rendered before are in {files}"
-            ))
+        Some((held, files)) => {
+            Failure::BrokeOff(anyhow!("{reason}; {held} samples per pixel are in {files}"))
         }
-        Some((kept, path)) => Failure::BrokeOff(anyhow!("{reason}; {kept} samples per pixel are in {path}")),
         None => Failure::Run(anyhow!("{reason}")),
     })
 }

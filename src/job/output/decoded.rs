@@ -30,20 +30,13 @@ impl Damage {
 }
 
 /// The error of a file that ends before its last pixel.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{reason}")]
 pub struct Incomplete {
     /// The pixels that it has, fewer than its size calls for.
     pub picture: Box<ReadPicture>,
     pub reason: String,
 }
-
-impl std::fmt::Display for Incomplete {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.write_str(&self.reason)
-    }
-}
-
-impl std::error::Error for Incomplete {}
 
 /// A picture as its file holds it, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]

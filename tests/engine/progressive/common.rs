@@ -164,7 +164,7 @@ impl Renderer for Fake {
         (self.on_pass)(&range, self.good_collections);
         self.held.push_back(range);
         if self.held.len() <= self.holds {
-            return Ok(Stats::default().into());
+            return Ok(Outcome::Added(Stats::default()));
         }
         let due = self.held.pop_front().unwrap();
         self.add(due, film, cancel).map(Outcome::from)

@@ -12,9 +12,8 @@ use crate::system::memory;
 use anyhow::{Result, anyhow};
 use glam::DVec3;
 use serde::de::value::SeqAccessDeserializer;
-use serde::de::{Error as _, MapAccess, SeqAccess, Visitor};
+use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
-use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::{self, Display};
 use std::ops::Range;
@@ -78,7 +77,8 @@ fn read(source: &Source) -> Result<Recipe> {
     let Source { text, name, .. } = source;
     let outside_tables = text.split("'''").step_by(2).flat_map(str::bytes);
     let values = outside_tables.filter(|byte| b",=[{\n".contains(byte)).count() as u64;
-    let bytes = text.len() as u64 + VALUE_BYTES * values;
+    // A table is copied.
+    let bytes = 2 * text.len() as u64 + VALUE_BYTES * values;
     let remedy = "use a scene of fewer spheres, or close other programs";
     memory::check(|| format!("reading {name}"), bytes, remedy)?;
     let raw = toml::from_str(text).map_err(|error| {
@@ -156,14 +156,13 @@ fn in_its_place(error: &toml::de::Error) -> Option<String> {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RawFile<'a> {
+struct RawFile {
     /// A built-in scene, instead of sky, materials and spheres.
     scene: Option<Spanned<String>>,
     scene_mark: Option<Spanned<String>>,
     sky: Option<Spanned<RawSky>>,
     materials: Option<BTreeMap<Spanned<String>, Material>>,
-    #[serde(borrow)]
-    spheres: Option<Spanned<RawSpheres<'a>>>,
+    spheres: Option<Spanned<RawSpheres>>,
     camera: Spanned<RawCamera>,
     #[serde(default)]
     keyframes: Vec<Spanned<RawCamera>>,
@@ -212,39 +211,30 @@ struct RawSky {
     top: Option<Triple>,
 }
 
-enum RawSpheres<'a> {
+enum RawSpheres {
     Listed(Vec<Spanned<RawSphere>>),
     /// A table, or the name of its file.
-    Table(Cow<'a, str>),
+    Table(String),
 }
 
-impl<'de: 'a, 'a> Deserialize<'de> for RawSpheres<'a> {
+impl<'de> Deserialize<'de> for RawSpheres {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Either;
         impl<'de> Visitor<'de> for Either {
-            type Value = RawSpheres<'de>;
+            type Value = RawSpheres;
 
             fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-                formatter.write_str("a list of spheres, a table of them, or the name of its file")
+                formatter.write_str(
+                    "a list of spheres, [[spheres]] for each, or above the first [table] a table of them, spheres = \"FILE.csv\"",
+                )
             }
 
             fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Self::Value, A::Error> {
                 Vec::deserialize(SeqAccessDeserializer::new(list)).map(RawSpheres::Listed)
             }
 
-            fn visit_map<A: MapAccess<'de>>(self, _: A) -> Result<Self::Value, A::Error> {
-                Err(A::Error::custom(
-                    "[spheres] is one table; write [[spheres]] for each sphere, or spheres = \"FILE.csv\" above the \
-                     first [table]",
-                ))
-            }
-
-            fn visit_borrowed_str<E>(self, text: &'de str) -> Result<Self::Value, E> {
-                Ok(RawSpheres::Table(text.into()))
-            }
-
             fn visit_str<E>(self, text: &str) -> Result<Self::Value, E> {
-                Ok(RawSpheres::Table(text.to_owned().into()))
+                Ok(RawSpheres::Table(text.to_owned()))
             }
         }
         deserializer.deserialize_any(Either)
@@ -464,10 +454,9 @@ fn material_of(
 ) -> Result<usize, String> {
     let what = format_args!("spheres[{sphere}].material");
     match value {
-        toml::Value::String(name) => index_of.get(&name).copied().ok_or_else(|| {
-            let error = missing_material(sphere, &name);
-            error.to_string()
-        }),
+        toml::Value::String(name) => {
+            index_of.get(&name).copied().ok_or_else(|| missing_material(sphere, &name).to_string())
+        }
         table @ toml::Value::Table(_) => {
             let material = Material::deserialize(table);
             let material = material.map_err(|error| format!("{what}: {}", toml_message(error)))?;
