@@ -147,18 +147,15 @@ impl<'a> Run<'a> {
     fn render_all(&mut self, mut look: impl FnMut(u32)) -> Result<(), Failure> {
         loop {
             for frame in self.options.frames.clone() {
-                if self.done.contains(&frame) {
-                    continue;
-                }
                 look(self.done.len() as u32);
                 if self.interrupt.is_set() {
                     return Ok(());
                 }
-                if self.finish(frame)? {
+                if !self.done.contains(&frame) && self.finish(frame)? {
                     self.done.insert(frame);
                 }
             }
-            if self.is_done() || self.interrupt.is_set() {
+            if self.is_done() {
                 return Ok(());
             }
             std::thread::sleep(PAUSE);
@@ -173,22 +170,14 @@ impl<'a> Run<'a> {
     fn finish(&mut self, frame: u32) -> Result<bool, Failure> {
         let options = self.options.at(frame).map_err(Failure::Run)?;
         let (file, until) = (self.options.names.path(frame), options.until());
-        let is_whole =
-            |options: &BatchOptions| is_whole_frame(&file, &options.recipe, SOFTWARE, (key::UNTIL, &until));
-        if is_whole(&options) {
-            return Ok(true);
-        }
         let Ok(files) = Files::lock(options, Duration::ZERO) else { return Ok(false) };
-        // Another run may have just finished it.
-        if is_whole(&files.options) {
+        if is_whole_frame(&file, &files.options.recipe, SOFTWARE, (key::UNTIL, &until)) {
             return Ok(true);
         }
         let (begin, done, count) = (Instant::now(), self.done.len(), self.options.frames.len());
-        let per_frame = self.rendering.as_secs_f64() / self.rendered as f64;
-        let left = match self.rendered {
-            0 => String::new(),
-            _ => format!(", {} left", seconds(per_frame * (count - done) as f64)),
-        };
+        let per_frame = self.rendering.checked_div(self.rendered as u32);
+        let left = per_frame.map(|time| time.as_secs_f64() * (count - done) as f64);
+        let left = left.map_or_else(String::new, |left| format!(", {} left", seconds(left)));
         let (rendered, outcome) = picture::render(
             &Arc::new(files),
             None,

@@ -137,14 +137,14 @@ impl Integers {
         let value =
             |pixel: &[i64], channel: usize| pixel[channel.min(channels - 1)].clamp(0, most.into()) as u16;
         let rgb = values.chunks_exact(channels).map(|pixel| [0, 1, 2].map(|c| value(pixel, c))).collect();
-        let values_of_it = Values::Integers { most, rgb };
-        let picture =
-            ReadPicture { width, height, format, values: values_of_it, damages, notes, stated: None };
-        if values.len() < count {
-            let picture = Box::new(ReadPicture { damages: Vec::new(), ..picture });
-            return Err(Incomplete { picture, reason: missing() }.into());
+        let is_whole = values.len() == count;
+        let values = Values::Integers { most, rgb };
+        let picture = ReadPicture { width, height, format, values, damages, notes, stated: None };
+        if is_whole {
+            return Ok(picture);
         }
-        Ok(picture)
+        let picture = Box::new(ReadPicture { damages: Vec::new(), ..picture });
+        Err(Incomplete { picture, reason: missing() }.into())
     }
 }
 

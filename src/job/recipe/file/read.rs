@@ -333,17 +333,15 @@ impl Source<'_> {
     /// The built-in scene of this name. Refused if its mark differs from that in the file.
     fn builtin_scene(&self, name: &Spanned<String>, mark: Option<&Spanned<String>>) -> Result<Arc<Scene>> {
         let scene = Recipe::find(name.get_ref()).map_err(|error| self.refuse(name.span(), error))?.scene;
-        match mark {
-            Some(mark) if *mark.get_ref() != named::mark(&scene) => {
-                let reason = format!(
-                    "the built-in scene {:?} has changed since this file was made; use the version that made it, or remove \
+        if let Some(mark) = mark.filter(|mark| *mark.get_ref() != named::mark(&scene)) {
+            let reason = format!(
+                "the built-in scene {:?} has changed since this file was made; use the version that made it, or remove \
                  scene_mark to use the current scene",
-                    name.get_ref()
-                );
-                Err(self.refuse(mark.span(), reason))
-            }
-            _ => Ok(scene),
+                name.get_ref()
+            );
+            return Err(self.refuse(mark.span(), reason));
         }
+        Ok(scene)
     }
 
     fn sky(&self, raw: Option<Spanned<RawSky>>) -> Result<Sky> {
@@ -399,14 +397,12 @@ impl Source<'_> {
     /// The camera. `base` has the values of missing keys; without it, some keys are required.
     fn camera(&self, raw: &Spanned<RawCamera>, base: Option<&Camera>) -> Result<Camera> {
         let (place, raw) = (raw.span(), raw.get_ref());
-        let missing = match raw {
-            _ if base.is_some() => None,
-            RawCamera { look_from: None, .. } => Some("look_from"),
-            RawCamera { look_at: None, .. } => Some("look_at"),
-            RawCamera { vfov_degrees: None, .. } => Some("vfov_degrees"),
-            _ => None,
-        };
-        if let Some(key) = missing {
+        let required = [
+            ("look_from", raw.look_from.is_some()),
+            ("look_at", raw.look_at.is_some()),
+            ("vfov_degrees", raw.vfov_degrees.is_some()),
+        ];
+        if let Some((key, _)) = required.iter().find(|(_, is_there)| base.is_none() && !is_there) {
             return Err(self.refuse(place, format!("missing key `{key}`")));
         }
         let base = base.unwrap_or(&Camera::BOOK);
