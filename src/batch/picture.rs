@@ -165,11 +165,10 @@ fn so_far(status: &Status, elapsed: Duration, left: Option<f64>) -> String {
 
 /// Seconds until the first stop condition is met, if that can be predicted.
 fn seconds_left(plan: &Plan, status: &Status) -> Option<f64> {
-    let added = status.added();
-    if added == 0 {
+    if status.added() == 0 {
         return None;
     }
-    let per_sample = status.trace.as_secs_f64() / added as f64;
+    let per_sample = status.seconds_per_sample();
     let held = status.samples_per_pixel as f64;
     let by_samples = (status.planned_samples_per_pixel as f64 - held) * per_sample;
     let by_time = plan.stop.time_limit().map(|limit| limit.saturating_sub(status.elapsed).as_secs_f64());

@@ -41,7 +41,10 @@ pub(super) fn read(mut reader: impl BufRead + Seek, length: u64, layer: Option<&
     let Layer { part, channels, alpha, .. } = choose(&layers, &image, layer)?;
     let compression = part.encoding.compression;
     let may_lose = compression.may_loose_data().then(|| format!("its {compression} may change the values"));
-    let mut notes: Vec<String> = note_on_colours(&image).into_iter().chain(may_lose).collect();
+    let space = image.attributes.chromaticities;
+    let primaries =
+        space.map(|space| [space.red, space.green, space.blue, space.white].map(|Vec2(x, y)| [x, y]));
+    let mut notes: Vec<String> = primaries.and_then(note_on_primaries).into_iter().chain(may_lose).collect();
     if layer.is_none() && layers.len() > 1 {
         notes.push(format!("it has other layers, which are ignored: {}", names(&layers)));
     }
@@ -127,12 +130,6 @@ fn choose<'a>(layers: &'a [Layer], image: &FlatImage, name: Option<&str>) -> Res
 fn names(layers: &[Layer]) -> String {
     let names = layers.iter().map(|layer| layer.name.as_str()).filter(|name| !name.is_empty());
     names.collect::<Vec<_>>().join(", ")
-}
-
-/// A note if the colours of a picture are not those of sRGB.
-fn note_on_colours(image: &FlatImage) -> Option<String> {
-    let space = image.attributes.chromaticities.as_ref()?;
-    note_on_primaries([space.red, space.green, space.blue, space.white].map(|Vec2(x, y)| [x, y]))
 }
 
 /// Width and height, if there is memory for the picture and `bytes` more per pixel.

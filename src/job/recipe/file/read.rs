@@ -1,11 +1,12 @@
 //! From TOML to a recipe: serde checks the form, [`recipe_of`] the values.
 
+use super::growing::GrowingScene;
 use super::named;
-use super::table::{Table, added_material, text_of};
+use super::table::{Table, text_of};
 use crate::job::recipe::{DEFAULT_SAMPLES_PER_PIXEL, Recipe};
 use crate::job::render::{DEPTH_LIMIT, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::scene::animation::{FRAME_LIMIT, Keyframe};
-use crate::scene::{Camera, Material, Scene, Sky, missing_material};
+use crate::scene::{Camera, Material, Scene, Sky};
 use crate::stages::Rules;
 use crate::system::files::{self, ShownPath};
 use crate::system::memory;
@@ -14,7 +15,7 @@ use glam::DVec3;
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 use std::ops::Range;
 use std::path::Path;
@@ -286,21 +287,17 @@ impl Source<'_> {
             }
             Some(scene) => self.builtin_scene(&scene, raw.scene_mark.as_ref())?,
             None => {
-                let (mut scene, mut index_of) =
-                    self.painted_scene(self.sky(raw.sky)?, raw.materials.unwrap_or_default())?;
+                let mut scene = self.painted_scene(self.sky(raw.sky)?, raw.materials.unwrap_or_default())?;
                 let place = raw.spheres.as_ref().map(Spanned::span).unwrap_or_default();
                 match raw.spheres.map(Spanned::into_inner) {
-                    Some(RawSpheres::Listed(spheres)) => {
-                        self.add_listed(spheres, &mut scene, &mut index_of)?
-                    }
+                    Some(RawSpheres::Listed(spheres)) => self.add_listed(spheres, &mut scene)?,
                     Some(RawSpheres::Table(text)) => {
                         let (line, _) = self.line_at(place.start);
-                        let table = Table::open(text, line, self.name, self.directory)?;
-                        table.add_to(&mut scene, &mut index_of)?;
+                        Table::open(text, line, self.name, self.directory)?.add_to(&mut scene)?;
                     }
                     None => {}
                 }
-                Arc::new(scene)
+                Arc::new(scene.scene)
             }
         };
         if raw.camera.get_ref().frame.is_some() {
@@ -355,41 +352,31 @@ impl Source<'_> {
         Ok(sky)
     }
 
-    /// A scene without spheres, and the index of each of its materials.
+    /// A scene without spheres.
     fn painted_scene(
         &self,
         sky: Sky,
         materials: BTreeMap<Spanned<String>, Material>,
-    ) -> Result<(Scene, HashMap<String, usize>)> {
-        let mut scene = Scene { sky, ..Scene::default() };
+    ) -> Result<GrowingScene> {
+        let mut scene = GrowingScene::default();
+        scene.scene.sky = sky;
         // Restore the file's order; the map sorted them by name.
         let mut named: Vec<_> = materials.into_iter().collect();
         named.sort_by_key(|(name, _)| name.span().start);
-        let mut index_of = HashMap::with_capacity(named.len());
         for (name, material) in named {
             let place = name.span();
             let name = name.into_inner();
             material.validate(format_args!("materials.{name}")).map_err(|error| self.refuse(place, error))?;
-            index_of.insert(name.clone(), scene.add_material(name, material));
+            scene.add_material(name, material);
         }
-        Ok((scene, index_of))
+        Ok(scene)
     }
 
-    fn add_listed(
-        &self,
-        spheres: Vec<Spanned<RawSphere>>,
-        scene: &mut Scene,
-        index_of: &mut HashMap<String, usize>,
-    ) -> Result<()> {
-        scene.spheres.reserve_exact(spheres.len());
-        for (index, sphere) in spheres.into_iter().enumerate() {
+    fn add_listed(&self, spheres: Vec<Spanned<RawSphere>>, scene: &mut GrowingScene) -> Result<()> {
+        scene.scene.spheres.reserve_exact(spheres.len());
+        for sphere in spheres {
             let place = sphere.span();
-            let RawSphere { center: Triple(center), radius, material } = sphere.into_inner();
-            let material = material_of(material, index, scene, index_of)
-                .map_err(|reason| self.refuse(place.clone(), reason))?;
-            scene.add_sphere(center, radius, material);
-            let validated = scene.spheres[index].validate(index, scene.materials.len());
-            validated.map_err(|error| self.refuse(place, error))?;
+            add_sphere(sphere.into_inner(), scene).map_err(|reason| self.refuse(place, reason))?;
         }
         Ok(())
     }
@@ -441,26 +428,22 @@ impl Source<'_> {
     }
 }
 
-/// The index of a sphere's material.
-fn material_of(
-    value: toml::Value,
-    sphere: usize,
-    scene: &mut Scene,
-    index_of: &mut HashMap<String, usize>,
-) -> Result<usize, String> {
-    let what = format_args!("spheres[{sphere}].material");
-    match value {
-        toml::Value::String(name) => {
-            index_of.get(&name).copied().ok_or_else(|| missing_material(sphere, &name).to_string())
-        }
+fn add_sphere(sphere: RawSphere, scene: &mut GrowingScene) -> Result<(), String> {
+    let RawSphere { center: Triple(center), radius, material } = sphere;
+    let index = scene.scene.spheres.len();
+    let what = format_args!("spheres[{index}].material");
+    let material = match material {
+        toml::Value::String(name) => scene.material(&name)?,
         table @ toml::Value::Table(_) => {
             let material = Material::deserialize(table);
-            let material = material.map_err(|error| format!("{what}: {}", toml_message(error)))?;
-            added_material(sphere, material, scene, index_of)
+            scene.own_material(material.map_err(|error| format!("{what}: {}", toml_message(error)))?)?
         }
-        other => Err(format!(
-            "{what} is {other}, but must be a material's name or a table such as {{ kind = \"metal\", albedo = [0.8, 0.8, \
-             0.8] }}"
-        )),
-    }
+        other => {
+            return Err(format!(
+                "{what} is {other}, but must be a material's name or a table such as {{ kind = \"metal\", albedo = [0.8, 0.8, \
+                 0.8] }}"
+            ));
+        }
+    };
+    scene.add_sphere(center, radius, material)
 }

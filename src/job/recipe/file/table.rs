@@ -1,13 +1,13 @@
 //! The spheres of a scene of many as a table: CSV, in a file of its own or in a string of the scene file. TOML takes 3 kB
 //! of memory per sphere.
 
-use crate::scene::{Material, Scene, Sphere, missing_material};
+use super::growing::GrowingScene;
+use crate::scene::{Scene, Sphere};
 use crate::system::files::{self, ShownPath};
 use crate::system::memory;
 use anyhow::{Context, Result, anyhow};
 use glam::DVec3;
 use serde::Deserialize;
-use std::collections::HashMap;
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -66,36 +66,32 @@ impl Table {
         Ok(Table { text, file: path.shown(), lines_before: 0 })
     }
 
-    /// Adds its spheres to a scene that has the materials `index_of`.
-    pub fn add_to(&self, scene: &mut Scene, index_of: &mut HashMap<String, usize>) -> Result<()> {
+    /// Adds its spheres to a scene that has their materials.
+    pub fn add_to(&self, scene: &mut GrowingScene) -> Result<()> {
         let at =
             |line: usize, reason: String| anyhow!("{}:{}: {reason}", self.file, self.lines_before + line);
         let rows = self.text.bytes().filter(|byte| *byte == b'\n').count();
         let remedy = "use a table of fewer spheres, or close other programs";
         memory::check(|| format!("reading {}", self.file), (rows * size_of::<Sphere>()) as u64, remedy)?;
-        scene.spheres.reserve_exact(rows);
+        scene.scene.spheres.reserve_exact(rows);
         let text = self.text.trim_start_matches('\u{feff}');
         let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
         let (line, header) = lines.next().unwrap_or((1, ""));
         let columns = columns_of(&values_of(header)).map_err(|reason| at(line, reason))?;
-        let mut coloured = HashMap::new();
         for (line, row) in lines {
-            let sphere = sphere_of(&values_of(row), &columns, scene, index_of, &mut coloured);
-            scene.spheres.push(sphere.map_err(|reason| at(line, reason))?);
+            add_row(&values_of(row), &columns, scene).map_err(|reason| at(line, reason))?;
         }
         Ok(())
     }
 }
 
-/// The sphere of a row, whose values are in `columns`. `coloured` has the materials of colours.
-fn sphere_of(
+/// Adds the sphere of a row, whose values are in `columns`.
+fn add_row(
     row: &[&str],
     columns: &[Option<usize>; COLUMNS.len()],
-    scene: &mut Scene,
-    index_of: &mut HashMap<String, usize>,
-    coloured: &mut HashMap<[u64; 3], usize>,
-) -> Result<Sphere, String> {
-    let (index, found, count) = (scene.spheres.len(), row.len(), columns.iter().flatten().count());
+    scene: &mut GrowingScene,
+) -> Result<(), String> {
+    let (index, found, count) = (scene.scene.spheres.len(), row.len(), columns.iter().flatten().count());
     if found != count {
         return Err(format!(
             "spheres[{index}] should have {count} values, one for each column, and has {found}; separate the values by \
@@ -114,38 +110,10 @@ fn sphere_of(
     };
     let (center, radius) = (vector(0)?, number(RADIUS)?);
     let material = match texts[MATERIAL] {
-        Some(name) => index_of.get(name).copied().ok_or_else(|| missing_material(index, name).to_string())?,
-        None => {
-            let albedo = vector(MATERIAL + 1)?;
-            let bits = albedo.to_array().map(f64::to_bits);
-            let material = match coloured.get(&bits) {
-                Some(known) => *known,
-                None => added_material(index, Material::Lambertian { albedo }, scene, index_of)?,
-            };
-            coloured.insert(bits, material);
-            material
-        }
+        Some(name) => scene.material(name)?,
+        None => scene.matte(vector(MATERIAL + 1)?)?,
     };
-    let sphere = Sphere { center, radius, material };
-    sphere.validate(index, scene.materials.len()).map_err(|error| error.to_string())?;
-    Ok(sphere)
-}
-
-/// Adds the own material of a sphere, which gets a unique name, and returns its index.
-pub(super) fn added_material(
-    sphere: usize,
-    material: Material,
-    scene: &mut Scene,
-    index_of: &mut HashMap<String, usize>,
-) -> Result<usize, String> {
-    material.validate(format_args!("spheres[{sphere}].material")).map_err(|error| error.to_string())?;
-    let mut name = format!("sphere-{sphere}");
-    while index_of.contains_key(&name) {
-        name.push('*');
-    }
-    let index = scene.add_material(name.clone(), material);
-    index_of.insert(name, index);
-    Ok(index)
+    scene.add_sphere(center, radius, material)
 }
 
 /// The values of a row, each of which may be quoted. No value has a comma.
