@@ -144,7 +144,7 @@ impl Files {
         if !written.failures.is_empty() && !is_film_kept && options.frame.is_none() {
             let directory = |output: &Output| Some(Path::new(".").join(output.path.parent()?));
             let directories: Vec<PathBuf> = options.outputs.iter().filter_map(directory).collect();
-            match rescue(&directories, &options.recipe.name, film, &description) {
+            match rescue(&directories, film, &description) {
                 Ok(path) => {
                     let rescued = path.shown();
                     written.failures.push(format!(

@@ -11,7 +11,7 @@ mod studio;
 mod summary;
 
 pub use frames::{FrameNames, FramesOptions, render_frames, write_frames};
-pub use studio::{Event, Studio};
+pub use studio::Studio;
 pub use summary::{Line, aligned, lines};
 
 use crate::backends::{self, BackendChoice};

@@ -3,7 +3,7 @@
 use super::BatchOptions;
 use super::files::{Files, Written};
 use super::keeping::Keeper;
-use super::studio::{Event, Studio};
+use super::studio::Studio;
 use crate::film::{Film, checkpoint};
 use crate::progressive::describe::seconds;
 use crate::progressive::{EndReason, Phase, Plan, Status};
@@ -73,25 +73,27 @@ pub(super) fn render(
 ) -> (Rendered, Result<(), Failure>) {
     let options = &files.options;
     let mut keeper = options.checkpoint().map(|_| Keeper::new(files));
-    let (status, film) =
-        studio.render(options.job.clone(), options.plan.clone(), film, |event| match event {
-            Event::Warning(warning) => screen.warn(warning),
-            Event::Stopping => {
-                let hint = "; press Ctrl-C again to exit at once without writing";
-                let hint = if interrupt.is_by_hand() { hint } else { "" };
-                let end = match options.frame {
-                    Some(frame) => format!("dropping frame {frame}; the others are complete"),
-                    None => "finishing the current samples and writing the files".to_owned(),
-                };
-                screen.display.say(&format!("{}: {end}{hint}", interrupt.cause()));
-            }
-            Event::Status(_, status) if status.phase.is_over() => {}
-            Event::Status(progressive, status) => {
-                let warning = keeper.as_mut().and_then(|keeper| keeper.look(progressive, status));
-                warning.iter().for_each(|warning| screen.display.warn(warning));
-                show(&mut screen.display, status);
-            }
-        });
+    let mut is_stopping = false;
+    let (job, plan) = (options.job.clone(), options.plan.clone());
+    let (status, film) = studio.render(job, plan, film, |progressive, status| {
+        status.messages.iter().for_each(|message| screen.warn(message));
+        if status.phase.is_over() {
+            return;
+        }
+        if interrupt.is_set() && !is_stopping {
+            is_stopping = true;
+            let hint = "; press Ctrl-C again to exit at once without writing";
+            let hint = if interrupt.is_by_hand() { hint } else { "" };
+            let end = match options.frame {
+                Some(frame) => format!("dropping frame {frame}; the others are complete"),
+                None => "finishing the current samples and writing the files".to_owned(),
+            };
+            screen.display.say(&format!("{}: {end}{hint}", interrupt.cause()));
+        }
+        let warning = keeper.as_mut().and_then(|keeper| keeper.look(progressive, status));
+        warning.iter().for_each(|warning| screen.display.warn(warning));
+        show(&mut screen.display, status);
+    });
     let names: Vec<String> = options.outputs.iter().map(|output| output.path.shown()).collect();
     let guard = interrupt.while_writing(names.join(" and "));
     let begin = Instant::now();

@@ -1,6 +1,6 @@
 //! OpenEXR as any program writes it.
 
-use super::decoded::{ReadPicture, Values, check_memory, note_on_alpha, note_on_primaries, pixel_count};
+use super::decoded::{ReadPicture, Values, note_on_alpha, note_on_primaries, pixel_count};
 use crate::film::checkpoint;
 use anyhow::{Result, anyhow, bail};
 use exr::error::Error;
@@ -135,8 +135,7 @@ fn names(layers: &[Layer]) -> String {
 /// Width and height, if there is memory for the picture and `bytes` more per pixel.
 fn size(Vec2(width, height): Vec2<usize>, bytes: usize) -> Result<(u32, u32)> {
     let [width, height] = [width, height].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
-    pixel_count(width, height)?;
-    check_memory(width, height, bytes as u64)?;
+    pixel_count(width, height, bytes as u64)?;
     Ok((width, height))
 }
 

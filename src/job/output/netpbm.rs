@@ -3,7 +3,7 @@
 //! Common faults are repaired and reported. Sources: the manual pages of netpbm; Paul Debevec, "PFM Portable FloatMap
 //! Image Format".
 
-use super::decoded::{Damage, Incomplete, ReadPicture, Values, check_memory, pixel_count};
+use super::decoded::{Damage, Incomplete, ReadPicture, Values, pixel_count};
 use crate::film::Film;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use std::borrow::Cow;
@@ -57,8 +57,8 @@ fn next_picture(file: &[u8]) -> Option<&[u8]> {
     if matches!(file[1], b'2' | b'3') {
         return lines(file).skip(1).find(|rest| is_header(rest));
     }
-    let (picture, data) = byte_header(file).ok()?;
-    let rest = data.get(picture.count() * picture.bytes_per_value()..)?.trim_ascii_start();
+    let (_, data, needed) = byte_header(file).ok()?;
+    let rest = data.get(needed..)?.trim_ascii_start();
     is_header(rest).then_some(rest)
 }
 
@@ -148,22 +148,21 @@ impl Integers {
     }
 }
 
-/// A picture of bytes without its values, and what follows its header.
-fn byte_header(file: &[u8]) -> Result<(Integers, &[u8])> {
+/// A picture of bytes without its values, what follows its header, and how many bytes of this the picture needs.
+fn byte_header(file: &[u8]) -> Result<(Integers, &[u8], usize)> {
     let (format, channels) = if file[1] == b'5' { ("P5", 1) } else { ("P6", 3) };
     let mut picture = Integers { format, channels, ..Integers::default() };
     let mut words = Words { file, at: 2 };
     let head = [words.number("width")?, words.number("height")?, words.number("largest value")?];
     picture.set_head(head)?;
     let needed = picture.count() * picture.bytes_per_value();
-    Ok((picture, words.payload(needed)))
+    Ok((picture, words.payload(needed), needed))
 }
 
 /// Reads numbers of one or two bytes.
 fn bytes(file: &[u8]) -> Result<ReadPicture> {
-    let (mut picture, data) = byte_header(file)?;
+    let (mut picture, data, needed) = byte_header(file)?;
     let Integers { format, channels, width, height, most, .. } = picture;
-    let needed = picture.count() * picture.bytes_per_value();
     if let Some(body) = text_of(data) {
         let as_text = format!("P3 {width} {height} {most}\n{body}");
         if let Ok(mut read) = text(as_text.as_bytes(), format, channels) {
@@ -407,9 +406,7 @@ fn checked([width, height]: [u64; 2]) -> Result<(u32, u32, usize)> {
         "its header says {width} x {height} pixels; write the width and height of the picture"
     );
     let [width, height] = [width, height].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
-    let count = pixel_count(width, height)?;
-    check_memory(width, height, 0)?;
-    Ok((width, height, count))
+    Ok((width, height, pixel_count(width, height, 0)?))
 }
 
 /// The white-space separated words of a header, without comments.

@@ -288,11 +288,10 @@ impl Source<'_> {
             Some(scene) => self.builtin_scene(&scene, raw.scene_mark.as_ref())?,
             None => {
                 let mut scene = self.painted_scene(self.sky(raw.sky)?, raw.materials.unwrap_or_default())?;
-                let place = raw.spheres.as_ref().map(Spanned::span).unwrap_or_default();
+                let line = raw.spheres.as_ref().map_or(1, |spheres| self.line_at(spheres.span().start).0);
                 match raw.spheres.map(Spanned::into_inner) {
                     Some(RawSpheres::Listed(spheres)) => self.add_listed(spheres, &mut scene)?,
                     Some(RawSpheres::Table(text)) => {
-                        let (line, _) = self.line_at(place.start);
                         Table::open(text, line, self.name, self.directory)?.add_to(&mut scene)?;
                     }
                     None => {}

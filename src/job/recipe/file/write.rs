@@ -5,7 +5,7 @@ use super::table;
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderSettings;
 use crate::scene::animation::Keyframe;
-use crate::scene::{Camera, Material, NamedMaterial, Parameter, Scene, Sphere, toml_key, toml_string};
+use crate::scene::{Camera, NamedMaterial, Parameter, Scene, Sphere, toml_key, toml_string};
 use crate::stages::Rules;
 use glam::DVec3;
 
@@ -89,16 +89,12 @@ fn rules(rules: &Rules) -> String {
 }
 
 fn material_line(NamedMaterial { name, material }: &NamedMaterial) -> String {
-    format!("{} = {}\n", toml_key(name), inline(material))
-}
-
-fn inline(material: &Material) -> String {
     let keys = material.parameters().into_iter().map(|(key, parameter)| match parameter {
         Parameter::Number(value) => format!("{key} = {}", number(value)),
         Parameter::Colour(colour) => format!("{key} = {}", vector(colour)),
     });
     let keys = keys.collect::<Vec<_>>().join(", ");
-    format!("{{ kind = \"{}\", {keys} }}", material.kind())
+    format!("{} = {{ kind = \"{}\", {keys} }}\n", toml_key(name), material.kind())
 }
 
 fn vector(v: DVec3) -> String {
