@@ -191,7 +191,15 @@ impl<'a> Run<'a> {
                 });
             },
         );
-        outcome.map_err(|failure| broken_off(failure, frame, done))?;
+        outcome.map_err(|failure| match failure {
+            Failure::Run(error) if done > 0 => {
+                let done = counted(done as u64, "frame");
+                Failure::BrokeOff(error.context(format!(
+                    "frame {frame} failed; {done} are kept; run the same command again to continue"
+                )))
+            }
+            failure => failure,
+        })?;
         if rendered.written.files.is_empty() {
             return Ok(false);
         }
@@ -219,19 +227,6 @@ impl<'a> Run<'a> {
             "warnings": self.screen.warnings,
         });
         with_recipe(recipe, figures)
-    }
-}
-
-/// The failure of a frame after `done` complete ones.
-fn broken_off(failure: Failure, frame: u32, done: usize) -> Failure {
-    match failure {
-        Failure::Run(error) | Failure::BrokeOff(error) if done > 0 => {
-            let done = counted(done as u64, "frame");
-            Failure::BrokeOff(error.context(format!(
-                "frame {frame} failed; {done} are kept; run the same command again to continue"
-            )))
-        }
-        failure => failure,
     }
 }
 

@@ -34,9 +34,8 @@ impl Keeper {
     pub fn look(&mut self, progressive: &Progressive, status: &Status) -> Option<String> {
         let warning = match self.pending.as_ref().map(Receiver::try_recv) {
             Some(Err(TryRecvError::Empty)) => return None,
-            Some(Ok(outcome)) => self.note(outcome),
-            Some(Err(TryRecvError::Disconnected)) => {
-                self.note(Err("a checkpoint was not written".to_owned()))
+            Some(outcome) => {
+                self.note(outcome.unwrap_or_else(|_| Err("a checkpoint was not written".to_owned())))
             }
             None => None,
         };

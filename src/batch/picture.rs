@@ -111,23 +111,20 @@ pub(super) fn render(
     if matches!(status.phase, Phase::Failed(_)) {
         journal::write_report();
     }
-    let outcome = outcome(options, &status, film.as_ref(), &written);
-    (Rendered { status, film, written, writing: begin.elapsed() }, outcome)
+    let done = Rendered { status, film, written, writing: begin.elapsed() };
+    let outcome = outcome(options, &done);
+    (done, outcome)
 }
 
 /// The result of a render and of writing its files.
-fn outcome(
-    options: &BatchOptions,
-    status: &Status,
-    film: Option<&Film>,
-    written: &Written,
-) -> Result<(), Failure> {
+fn outcome(options: &BatchOptions, done: &Rendered) -> Result<(), Failure> {
+    let Rendered { status, film, written, .. } = done;
     let failures = written.failures.join("; ");
     let Phase::Failed(reason) = &status.phase else {
         return if failures.is_empty() { Ok(()) } else { Err(Failure::Run(anyhow!(failures))) };
     };
     let files: Vec<String> = written.files.iter().map(ShownPath::shown).collect();
-    let now = film.filter(|_| !files.is_empty()).map(|film| (film.sample_count(), files.join(", ")));
+    let now = film.as_ref().filter(|_| !files.is_empty()).map(|film| (film.sample_count(), files.join(", ")));
     let before = |path: &Path| Some((checkpoint::read_head(path).ok()?.samples.count(), path.shown()));
     Err(match now.or_else(|| before(options.checkpoint()?)) {
         _ if !failures.is_empty() => Failure::Run(anyhow!("{reason}; {failures}")),
@@ -143,26 +140,18 @@ pub(super) const STEPS: u64 = 1000;
 
 /// Shows the state of a render that has taken `elapsed` so far.
 pub(super) fn show(display: &mut Display, plan: &Plan, status: &Status, elapsed: Duration) {
-    let left = seconds_left(plan, status);
-    let done = elapsed.as_secs_f64();
+    let (left, done) = (seconds_left(plan, status), elapsed.as_secs_f64());
     // The first step until the end can be predicted.
     let share = left.map_or(0.0, |left| done / (done + left).max(f64::MIN_POSITIVE));
-    display.update((share * STEPS as f64) as u64, || so_far(status, elapsed, left));
-}
-
-/// The render's progress. `elapsed` is the time since its start, and `left` the seconds to its end, if predictable.
-fn so_far(status: &Status, elapsed: Duration, left: Option<f64>) -> String {
-    if status.phase == Phase::Preparing {
-        return "preparing the scene".to_owned();
-    }
-    let error = status.error.map_or_else(String::new, |e| format!("error {:.2e}, ", e.rmse));
-    let left = left.map_or_else(String::new, |left| format!("{} left, ", seconds(left)));
-    format!(
-        "{error}{} spp, {left}{}, {:.1} Mpaths/s",
-        status.samples_per_pixel,
-        seconds(elapsed.as_secs_f64()),
-        status.paths_per_second() / 1e6,
-    )
+    display.update((share * STEPS as f64) as u64, || {
+        if status.phase == Phase::Preparing {
+            return "preparing the scene".to_owned();
+        }
+        let error = status.error.map_or_else(String::new, |e| format!("error {:.2e}, ", e.rmse));
+        let left = left.map_or_else(String::new, |left| format!("{} left, ", seconds(left)));
+        let (samples, speed) = (status.samples_per_pixel, status.paths_per_second() / 1e6);
+        format!("{error}{samples} spp, {left}{}, {speed:.1} Mpaths/s", seconds(done))
+    });
 }
 
 /// Seconds until the first stop condition is met, if that can be predicted.
