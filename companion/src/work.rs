@@ -11,12 +11,12 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
-use weekender::batch::{Event, Studio};
+use weekender::batch::Studio;
 use weekender::comparison::check::{self, Hypothesis, Mistake};
 use weekender::denoise;
 use weekender::job::output::write_small_png;
-use weekender::progressive::Phase;
 use weekender::progressive::describe::{counted, describe};
+use weekender::progressive::{Phase, Progressive, Status};
 use weekender::system::console;
 use weekender::system::failure::Failure;
 use weekender::system::files::{check_writable, make_directory, replace_file};
@@ -83,15 +83,14 @@ pub fn render(
     for picture in pictures.iter().take_while(|_| !interrupt.is_set()) {
         let (number, id, planned) = (rendered + 1, picture.stage.id, picture.recipe.samples_per_pixel);
         let path = options.out.join(picture.file());
-        let outcome = render_one(picture, &path, &mut studio, interrupt, |event| match event {
-            Event::Warning(message) => display.warn(message),
-            Event::Stopping => {}
-            Event::Status(_, status) => {
-                let done = status.samples_per_pixel;
-                display.update(before + done * picture.pixels(), || {
-                    format!("{number} of {}, {id}: {done} of {planned} spp", pictures.len())
-                });
-            }
+        let mut warned = 0;
+        let outcome = render_one(picture, &path, &mut studio, interrupt, |_, status| {
+            status.messages.iter().skip(warned).for_each(|message| display.warn(message));
+            warned = status.messages.len();
+            let done = status.samples_per_pixel;
+            display.update(before + done * picture.pixels(), || {
+                format!("{number} of {}, {id}: {done} of {planned} spp", pictures.len())
+            });
         });
         match outcome {
             Ok(true) => rendered += 1,
@@ -117,7 +116,7 @@ fn render_one(
     path: &Path,
     studio: &mut Studio<'_>,
     interrupt: &Interrupt,
-    look: impl FnMut(Event<'_>),
+    look: impl FnMut(&Progressive, &Status),
 ) -> Result<bool> {
     if let Tracer::Plain(mistake) = picture.tracer {
         write_part(path, picture, mistaken(picture, mistake)?)?;

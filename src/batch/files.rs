@@ -10,7 +10,7 @@ use crate::job::saved::{Replaced, SavedFilm, rescue};
 use crate::progressive::Status;
 use crate::progressive::describe::describe;
 use crate::system::failure::Failure;
-use crate::system::files::{LockedError, ShownPath};
+use crate::system::files::ShownPath;
 use anyhow::anyhow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -20,8 +20,8 @@ use std::time::Duration;
 /// The files of a render. No other run may write its films.
 pub(super) struct Files {
     pub options: BatchOptions,
-    /// The film of each output, if it has one.
-    films: Vec<Option<Mutex<LockedFilm>>>,
+    /// Each output, locked; those that are films hold one.
+    locked: Vec<Mutex<LockedFilm>>,
     /// Samples per pixel of the film that the render continues.
     pub held_before: u64,
     /// Tracing time of these samples, if known.
@@ -40,23 +40,14 @@ pub(super) struct Written {
 }
 
 impl Files {
-    /// Locks the films of a render, and the file of a frame. A film to be resumed must be read after this.
+    /// Locks the outputs of a render. A film to be resumed must be read after this.
     ///
     /// # Errors
     /// [`Failure::Input`] if another run writes one of them for as long as `patience`.
     pub fn lock(options: BatchOptions, patience: Duration) -> Result<Files, Failure> {
-        let lock = |output: &Output| {
-            let is_locked = output.format == OutputFormat::Exr || options.frame.is_some();
-            let film = is_locked.then(|| LockedFilm::new(&output.path, patience));
-            Ok(film.transpose()?.map(Mutex::new))
-        };
-        let films = options.outputs.iter().map(lock).collect::<Result<_, LockedError>>();
-        Ok(Files {
-            films: films.map_err(Failure::input)?,
-            options,
-            held_before: 0,
-            seconds_before: Some(0.0),
-        })
+        let lock = |output: &Output| LockedFilm::new(&output.path, patience).map(Mutex::new);
+        let locked = options.outputs.iter().map(lock).collect::<Result<_, _>>().map_err(Failure::input)?;
+        Ok(Files { options, locked, held_before: 0, seconds_before: Some(0.0) })
     }
 
     /// Checks the films that a render would replace. Returns warnings for the user.
@@ -64,23 +55,19 @@ impl Files {
     /// # Errors
     /// [`Failure::Input`] if the checkpoint is a file that the render does not continue.
     pub fn check(&mut self, resumed: Option<&SavedFilm>) -> Result<Vec<String>, Failure> {
-        let Files { options, films, held_before, seconds_before } = self;
+        let Files { options, locked, held_before, seconds_before } = self;
         if let Some(saved) = resumed {
             (*held_before, *seconds_before) = (saved.film.sample_count(), saved.seconds);
         }
         let resumed = resumed.map(|saved| &saved.film);
         let mut warnings = Vec::new();
-        for (Output { path, is_checkpoint, .. }, file) in options.outputs.iter().zip(films) {
-            let Some(file) = file else { continue };
+        let is_film = |(output, _): &(&Output, _)| output.format == OutputFormat::Exr;
+        for (Output { path, is_checkpoint, .. }, file) in options.outputs.iter().zip(locked).filter(is_film) {
             let file = file.get_mut().unwrap_or_else(PoisonError::into_inner);
-            let is_same = |other: &PathBuf| same_file::is_same_file(other, path).unwrap_or(false);
-            if let Some(film) = resumed.filter(|_| options.resume.as_ref().is_some_and(is_same)) {
-                file.holds(film.samples());
-                continue;
-            }
             let found = Replaced::at(path, &file::to_picture_toml(&options.recipe));
             let Some(found) = found else { continue };
-            if *is_checkpoint {
+            let is_same = |other: &PathBuf| same_file::is_same_file(other, path).unwrap_or(false);
+            if *is_checkpoint && !options.resume.as_ref().is_some_and(is_same) {
                 return Err(Failure::Input(anyhow!(found.refusal(path))));
             }
             let is_kept = |samples: &SampleRanges| {
@@ -97,32 +84,29 @@ impl Files {
 
     /// Writes the checkpoint. Returns a note for the user if the file already holds more.
     pub fn save_checkpoint(&self, film: &Film, status: &Status) -> Result<Option<String>, String> {
-        let mut outputs = self.options.outputs.iter().zip(&self.films);
-        let checkpoint = outputs.find(|(output, _)| output.is_checkpoint);
-        checkpoint.map_or(Ok(None), |(output, file)| {
-            self.save(output, file.as_ref(), (film, None), &self.described(film, status))
-        })
+        let mut outputs = self.options.outputs.iter().zip(&self.locked);
+        let Some(checkpoint) = outputs.find(|(output, _)| output.is_checkpoint) else { return Ok(None) };
+        let description = self.described(film, &status.of_film(film, self.held_before));
+        let note = self.save(checkpoint, (film, None), &description)?;
+        log::info!("checkpoint: {} samples per pixel", film.sample_count());
+        Ok(note)
     }
 
     /// Writes a film with its denoised picture, or either as a picture. Returns a note for the user.
     fn save(
         &self,
-        output: &Output,
-        file: Option<&Mutex<LockedFilm>>,
+        (Output { path, format, .. }, file): (&Output, &Mutex<LockedFilm>),
         (film, denoised): (&Film, Option<&Film>),
         description: &Description,
     ) -> Result<Option<String>, String> {
-        let Output { path, format, .. } = output;
-        let write = || match file.filter(|_| *format == OutputFormat::Exr) {
-            Some(file) => {
+        let write = || {
+            if *format == OutputFormat::Exr {
                 let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
-                file.save(film, denoised, description).map_err(|error| error.to_string())
+                return file.save(film, denoised, description).map_err(|error| error.to_string());
             }
-            None => {
-                let transfer = self.options.job.rules().transfer;
-                let wrote = write_image_as(path, *format, (film, denoised), transfer, description);
-                wrote.map(|()| None).map_err(|error| error.to_string())
-            }
+            let transfer = self.options.job.rules().transfer;
+            let wrote = write_image_as(path, *format, (film, denoised), transfer, description);
+            wrote.map(|()| None).map_err(|error| error.to_string())
         };
         // A panic counts as a failure, because the samples can still be written elsewhere or later.
         catch_unwind(AssertUnwindSafe(write)).unwrap_or_else(|payload| {
@@ -144,24 +128,23 @@ impl Files {
             of_picture.set(key::DENOISED, error.words());
         }
         let mut is_film_kept = false;
-        for (output, file) in options.outputs.iter().zip(&self.films) {
+        for (output, file) in options.outputs.iter().zip(&self.locked) {
             say(&output.path);
             let picture = denoised.as_ref().map(|denoised| &denoised.film).filter(|_| !output.is_checkpoint);
             let description = if output.is_checkpoint { &description } else { &of_picture };
-            match self.save(output, file.as_ref(), (film, picture), description) {
-                Ok(note) => {
-                    is_film_kept |= file.is_some();
-                    match note {
-                        // The file holds more, and is left unchanged.
-                        Some(note) => written.notes.push(note),
-                        None => written.files.push(output.path.clone()),
-                    }
-                }
+            let saved = self.save((output, file), (film, picture), description);
+            is_film_kept |= saved.is_ok() && output.format == OutputFormat::Exr;
+            match saved {
+                Ok(None) => written.files.push(output.path.clone()),
+                // The file holds more, and is left unchanged.
+                Ok(Some(note)) => written.notes.push(note),
                 Err(reason) => written.failures.push(reason),
             }
         }
         if !written.failures.is_empty() && !is_film_kept && options.frame.is_none() {
-            match rescue(&directories(options), &options.recipe.name, film, &description) {
+            let directory = |output: &Output| Some(Path::new(".").join(output.path.parent()?));
+            let directories: Vec<PathBuf> = options.outputs.iter().filter_map(directory).collect();
+            match rescue(&directories, film, &description) {
                 Ok(path) => {
                     let rescued = path.shown();
                     written.failures.push(format!(
@@ -193,15 +176,6 @@ impl Files {
 pub(super) fn denoised(film: &Film, is_wanted: bool, say: impl FnOnce(String)) -> Option<Denoised> {
     let denoised = is_wanted.then(|| denoise::of_film(film))?;
     denoised.map_err(|reason| say(format!("the picture is not denoised: {reason}"))).ok()
-}
-
-/// The directories of the files that the render writes.
-fn directories(options: &BatchOptions) -> Vec<PathBuf> {
-    let directory = |output: &Output| match output.path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
-        _ => PathBuf::from("."),
-    };
-    options.outputs.iter().map(directory).collect()
 }
 
 #[cfg(test)]

@@ -7,7 +7,6 @@ use super::studio::Studio;
 use super::summary::with_recipe;
 use super::{BatchOptions, Line, Output, check_before, ended, report};
 use crate::film::{SOFTWARE, key};
-use crate::job::output::OutputFormat;
 use crate::job::saved::is_whole_frame;
 use crate::progressive::describe::{counted, seconds};
 use crate::scene::animation::CameraPath;
@@ -88,12 +87,9 @@ const PAUSE: Duration = Duration::from_millis(100);
 pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let mut run = Run::new(&options, &interrupt)?;
-    let failure = match run.render_all(|_| {}) {
-        Err(failure @ Failure::Input(_)) => return Err(failure),
-        outcome => outcome.err(),
-    };
+    let failure = run.render_all(|_| {}).err();
     run.screen.display.clear();
-    let figures = report(&run.json(), &LINES, options.picture.json.as_deref(), None);
+    let figures = report(&run.json(), &LINES, &options.picture);
     if failure.is_none() && !run.is_done() {
         console::note("run the same command again to continue");
     }
@@ -124,7 +120,7 @@ const LINES: [Line; 4] = [
 struct Run<'a> {
     options: &'a FramesOptions,
     interrupt: &'a Interrupt,
-    studio: Option<Studio<'a>>,
+    studio: Studio<'a>,
     screen: Screen,
     begin: Instant,
     /// The frames that are there.
@@ -143,25 +139,23 @@ impl<'a> Run<'a> {
         check_before(&options.at(frames.start).map_err(Failure::Input)?)?;
         let mut screen = Screen::new(picture, frames.len() as u64);
         warning.iter().for_each(|warning| screen.warn(warning));
+        let studio = Studio::open(&picture.backend, interrupt)?;
         let (begin, rendering, done) = (Instant::now(), Duration::ZERO, BTreeSet::new());
-        Ok(Run { options, interrupt, studio: None, screen, begin, done, rendered: 0, rendering })
+        Ok(Run { options, interrupt, studio, screen, begin, done, rendered: 0, rendering })
     }
 
     fn render_all(&mut self, mut look: impl FnMut(u32)) -> Result<(), Failure> {
         loop {
             for frame in self.options.frames.clone() {
-                if self.done.contains(&frame) {
-                    continue;
-                }
                 look(self.done.len() as u32);
                 if self.interrupt.is_set() {
                     return Ok(());
                 }
-                if self.finish(frame)? {
+                if !self.done.contains(&frame) && self.finish(frame)? {
                     self.done.insert(frame);
                 }
             }
-            if self.is_done() || self.interrupt.is_set() {
+            if self.is_done() {
                 return Ok(());
             }
             std::thread::sleep(PAUSE);
@@ -176,39 +170,19 @@ impl<'a> Run<'a> {
     fn finish(&mut self, frame: u32) -> Result<bool, Failure> {
         let options = self.options.at(frame).map_err(Failure::Run)?;
         let (file, until) = (self.options.names.path(frame), options.until());
-        let is_whole =
-            |options: &BatchOptions| is_whole_frame(&file, &options.recipe, SOFTWARE, (key::UNTIL, &until));
-        if is_whole(&options) {
-            return Ok(true);
-        }
         let Ok(files) = Files::lock(options, Duration::ZERO) else { return Ok(false) };
-        // Another run may have just finished it.
-        if is_whole(&files.options) {
+        if is_whole_frame(&file, &files.options.recipe, SOFTWARE, (key::UNTIL, &until)) {
             return Ok(true);
         }
-        let is_undescribed = |Output { path, format, .. }: &Output| {
-            matches!(format, OutputFormat::P6 | OutputFormat::Pfm) && path.exists()
-        };
-        if files.options.outputs.iter().any(is_undescribed) {
-            self.screen.warn(
-                "frames that are there are rendered again: PPM and PFM cannot record how a frame was made, as PNG and EXR do",
-            );
-        }
-        let studio = match &mut self.studio {
-            Some(studio) => studio,
-            none => none.insert(Studio::open(&self.options.picture.backend, self.interrupt)?),
-        };
         let (begin, done, count) = (Instant::now(), self.done.len(), self.options.frames.len());
-        let per_frame = self.rendering.as_secs_f64() / self.rendered as f64;
-        let left = match self.rendered {
-            0 => String::new(),
-            _ => format!(", {} left", seconds(per_frame * (count - done) as f64)),
-        };
+        let per_frame = self.rendering.checked_div(self.rendered as u32);
+        let left = per_frame.map(|time| time.as_secs_f64() * (count - done) as f64);
+        let left = left.map_or_else(String::new, |left| format!(", {} left", seconds(left)));
         let (rendered, outcome) = picture::render(
             &Arc::new(files),
             None,
             &mut self.screen,
-            studio,
+            &mut self.studio,
             self.interrupt,
             |display, status| {
                 display.update(done as u64, || {
@@ -217,12 +191,15 @@ impl<'a> Run<'a> {
                 });
             },
         );
-        match outcome {
-            Err(Failure::Input(error) | Failure::Run(error) | Failure::BrokeOff(error)) => {
-                return Err(broken_off(error, frame, done));
+        outcome.map_err(|failure| match failure {
+            Failure::Run(error) if done > 0 => {
+                let done = counted(done as u64, "frame");
+                Failure::BrokeOff(error.context(format!(
+                    "frame {frame} failed; {done} are kept; run the same command again to continue"
+                )))
             }
-            outcome => outcome?,
-        }
+            failure => failure,
+        })?;
         if rendered.written.files.is_empty() {
             return Ok(false);
         }
@@ -251,16 +228,6 @@ impl<'a> Run<'a> {
         });
         with_recipe(recipe, figures)
     }
-}
-
-/// The failure of a frame after `done` complete ones.
-fn broken_off(error: anyhow::Error, frame: u32, done: usize) -> Failure {
-    if done == 0 {
-        return Failure::Run(error);
-    }
-    let done = counted(done as u64, "frame");
-    let context = format!("frame {frame} failed; {done} are kept; run the same command again to continue");
-    Failure::BrokeOff(error.context(context))
 }
 
 /// Where an animation's frames are: a directory, and a name with a place for the number.

@@ -74,10 +74,8 @@ fn figures(path: &Path) -> anyhow::Result<Value> {
         Some(Err(error)) => return Err(error.into()),
     };
     let of_film = |value: fn(&FilmHead) -> Value| head.map(value);
-    let resaved = match checkpoint::read_head(path) {
-        Err(error @ CheckpointError::Resaved { .. }) => Some(error.to_string()),
-        _ => None,
-    };
+    let unread = checkpoint::read_head(path).err();
+    let resaved = unread.filter(|error| matches!(error, CheckpointError::Resaved { .. }));
     let figures = json!({
         "kind": kind,
         "file": path.to_string_lossy(),
@@ -96,7 +94,7 @@ fn figures(path: &Path) -> anyhow::Result<Value> {
         "backend": saved.kind.text(key::BACKEND),
         "program": saved.kind.text(key::SOFTWARE),
         "command": saved.kind.text(key::COMMAND),
-        "note": resaved,
+        "note": resaved.map(|error| error.to_string()),
     });
     Ok(with_recipe(&saved.recipe, figures))
 }

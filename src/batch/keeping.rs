@@ -23,12 +23,6 @@ pub(super) struct Keeper {
 /// A note for the user, or why the write failed.
 type Outcome = Result<Option<String>, String>;
 
-fn write(files: &Files, film: &Film, status: &Status) -> Outcome {
-    let note = files.save_checkpoint(film, &status.of_film(film, files.held_before))?;
-    log::info!("checkpoint: {} samples per pixel", film.sample_count());
-    Ok(note)
-}
-
 impl Keeper {
     /// Keeps the film in the checkpoint.
     pub fn new(files: &Arc<Files>) -> Keeper {
@@ -40,9 +34,8 @@ impl Keeper {
     pub fn look(&mut self, progressive: &Progressive, status: &Status) -> Option<String> {
         let warning = match self.pending.as_ref().map(Receiver::try_recv) {
             Some(Err(TryRecvError::Empty)) => return None,
-            Some(Ok(outcome)) => self.note(outcome),
-            Some(Err(TryRecvError::Disconnected)) => {
-                self.note(Err("a checkpoint was not written".to_owned()))
+            Some(outcome) => {
+                self.note(outcome.unwrap_or_else(|_| Err("a checkpoint was not written".to_owned())))
             }
             None => None,
         };
@@ -51,16 +44,15 @@ impl Keeper {
             let (sender, receiver) = mpsc::channel();
             self.pending = Some(receiver);
             let (files, status) = (Arc::clone(&self.files), status.clone());
+            // The render may be over, and the outcome unread.
+            let keep = Arc::new(move |film: &Film| drop(sender.send(files.save_checkpoint(film, &status))));
             progressive.inspect(move |film| {
-                let (own, of_copy, answer) = (Arc::clone(&files), status.clone(), sender.clone());
-                let is_spawned = film.try_copy().is_ok_and(|copy| {
-                    // The render may be over, and the outcome unread.
-                    let write = move || drop(answer.send(write(&own, &copy, &of_copy)));
-                    Builder::new().name("keep".to_owned()).spawn(write).is_ok()
-                });
-                if !is_spawned {
-                    let _ = sender.send(write(&files, film, &status));
+                let own = Arc::clone(&keep);
+                let spawn = |copy| Builder::new().name("keep".to_owned()).spawn(move || own(&copy));
+                if film.try_copy().is_ok_and(|copy| spawn(copy).is_ok()) {
+                    return;
                 }
+                keep(film);
             });
         }
         warning

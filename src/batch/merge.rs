@@ -13,8 +13,7 @@ use crate::system::files::{FileLock, ShownPath};
 use crate::system::memory;
 use crate::system::shell;
 use crate::system::terminal::print;
-use anyhow::{anyhow, bail};
-use std::collections::HashSet;
+use anyhow::bail;
 use std::ffi::OsString;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -49,11 +48,6 @@ pub struct MergeOptions {
 /// # Errors
 /// [`Failure::Input`] if the films do not belong together, [`Failure::Run`] if the result cannot be written.
 pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
-    let mut seen = HashSet::new();
-    let is_again = |film: &&PathBuf| !seen.insert(film.canonicalize().unwrap_or_else(|_| film.to_path_buf()));
-    if let Some(film) = options.films.iter().find(is_again) {
-        return Err(Failure::Input(anyhow!("{} is named twice; name it once", film.shown())));
-    }
     let is_film = |out: &&PathBuf| matches!(OutputFormat::from_path(out), Ok(OutputFormat::Exr));
     let locks = options.out.iter().filter(is_film).map(|out| FileLock::take(out, FileLock::PATIENCE));
     let _locks = locks.collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;

@@ -11,7 +11,7 @@ mod studio;
 mod summary;
 
 pub use frames::{FrameNames, FramesOptions, render_frames, write_frames};
-pub use studio::{Event, Studio};
+pub use studio::Studio;
 pub use summary::{Line, aligned, lines};
 
 use crate::backends::{self, BackendChoice};
@@ -86,12 +86,6 @@ impl BatchOptions {
     fn until(&self) -> String {
         format!("{:?}, denoised: {}", self.plan.stop, self.denoise)
     }
-
-    /// Checks whether the peak fits into memory.
-    fn check_memory(&self) -> Result<(), Failure> {
-        let denoising = if self.denoise { denoise::BYTES_PER_PIXEL } else { 0 };
-        self.job.check_memory(1, denoising).map_err(Failure::input)
-    }
 }
 
 /// Renders and writes everything that the options ask for.
@@ -117,13 +111,7 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     let (mut done, outcome) = picture::render(&files, film, &mut screen, &mut studio, &interrupt, show);
     screen.display.clear();
     done.status.messages = screen.warnings;
-    ended(outcome.err(), report_picture(options, &figures(options, &done)), &interrupt)
-}
-
-fn report_picture(BatchOptions { outputs, json, .. }: &BatchOptions, figures: &Value) -> anyhow::Result<()> {
-    let mut paths = outputs.iter().map(|output| output.path.as_path());
-    let beside = paths.find(|path| *path == Path::new(STANDARD));
-    report(figures, &PICTURE, json.as_deref(), beside)
+    ended(outcome.err(), report(&figures(options, &done), &PICTURE, options), &interrupt)
 }
 
 /// The film to continue. A damaged one of `--continue` is renamed, and rendered again.
@@ -148,10 +136,13 @@ fn resumed(options: &BatchOptions) -> Result<Option<SavedFilm>, Failure> {
 /// Version of the JSON. Incremented when a key is removed or changes meaning.
 const SCHEMA: u32 = 1;
 
-/// Prints lines about figures, and writes the figures as JSON. If either JSON or a picture, `beside`, takes standard
-/// output, the lines go to standard error.
-fn report(figures: &Value, table: &[Line], json: Option<&Path>, beside: Option<&Path>) -> anyhow::Result<()> {
-    let printed = print_beside(beside.or(json), &aligned(&lines(figures, table)));
+/// Prints lines about figures, and writes the figures as JSON. If either JSON or a picture takes standard output, the
+/// lines go to standard error.
+fn report(figures: &Value, table: &[Line], options: &BatchOptions) -> anyhow::Result<()> {
+    let json = options.json.as_deref();
+    let mut targets = options.outputs.iter().map(|output| output.path.as_path()).chain(json);
+    let on_standard = targets.find(|path| *path == Path::new(STANDARD));
+    let printed = print_beside(on_standard, &aligned(&lines(figures, table)));
     printed.and(json.map_or(Ok(()), |target| terminal::write_figures(SCHEMA, figures, target)))
 }
 
@@ -195,7 +186,8 @@ fn check_before(options: &BatchOptions) -> Result<(), Failure> {
         .chain(&options.json)
         .try_for_each(|path| check_writable(path))
         .map_err(Failure::input)?;
-    options.check_memory()
+    let denoising = if options.denoise { denoise::BYTES_PER_PIXEL } else { 0 };
+    options.job.check_memory(1, denoising).map_err(Failure::input)
 }
 
 /// Prints the scenes, stages and devices to choose from.
@@ -203,19 +195,20 @@ fn check_before(options: &BatchOptions) -> Result<(), Failure> {
 /// # Errors
 /// [`Failure::Run`] if standard output cannot be written.
 pub fn list() -> Result<ExitCode, Failure> {
-    let (scenes, stages) = (BuiltinScene::ALL.iter(), Stage::ALL.iter());
-    let names = scenes.clone().map(|scene| scene.name).chain(stages.clone().map(|stage| stage.id));
-    let width = names.map(str::len).max().unwrap_or(0);
-    let mut lines = vec!["Scenes (--scene)".to_owned()];
-    lines.extend(scenes.map(|scene| format!("  {:<width$} {}", scene.name, scene.about)));
-    lines.push("\nStages (--stage)".to_owned());
-    lines.extend(stages.map(|stage| format!("  {:<width$} {:>5}  {}", stage.id, stage.section, stage.title)));
-    lines.push("\nDevices (--device)".to_owned());
-    lines.extend(backends::list().into_iter().map(|backend| {
+    let scenes = BuiltinScene::ALL.iter().map(|scene| (scene.name, scene.about.to_owned()));
+    let stages = Stage::ALL.iter().map(|stage| (stage.id, format!("{:>5}  {}", stage.section, stage.title)));
+    let devices = backends::list().into_iter().map(|backend| {
         let note = if backend.is_auto { " (auto)" } else { "" };
-        format!("  {:<width$} {}{note}", backend.device, backend.about)
-    }));
-    print(&(lines.join("\n") + "\n")).map_err(Failure::Run)?;
+        (backend.device, format!("{}{note}", backend.about))
+    });
+    let lists = [
+        ("Scenes (--scene)", scenes.collect::<Vec<_>>()),
+        ("Stages (--stage)", stages.collect()),
+        ("Devices (--device)", devices.collect()),
+    ];
+    let indented = |text: String| text.lines().map(|line| format!("  {line}\n")).collect::<String>();
+    let lists = lists.map(|(title, lines)| format!("{title}\n{}", indented(aligned(&lines))));
+    print(&lists.join("\n")).map_err(Failure::Run)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -3,7 +3,7 @@
 use super::BatchOptions;
 use super::files::{Files, Written};
 use super::keeping::Keeper;
-use super::studio::{Event, Studio};
+use super::studio::Studio;
 use crate::film::{Film, checkpoint};
 use crate::progressive::describe::seconds;
 use crate::progressive::{EndReason, Phase, Plan, Status};
@@ -73,25 +73,27 @@ pub(super) fn render(
 ) -> (Rendered, Result<(), Failure>) {
     let options = &files.options;
     let mut keeper = options.checkpoint().map(|_| Keeper::new(files));
-    let (status, film) =
-        studio.render(options.job.clone(), options.plan.clone(), film, |event| match event {
-            Event::Warning(warning) => screen.warn(warning),
-            Event::Stopping => {
-                let hint = "; press Ctrl-C again to exit at once without writing";
-                let hint = if interrupt.is_by_hand() { hint } else { "" };
-                let end = match options.frame {
-                    Some(frame) => format!("dropping frame {frame}; the others are complete"),
-                    None => "finishing the current samples and writing the files".to_owned(),
-                };
-                screen.display.say(&format!("{}: {end}{hint}", interrupt.cause()));
-            }
-            Event::Status(_, status) if status.phase.is_over() => {}
-            Event::Status(progressive, status) => {
-                let warning = keeper.as_mut().and_then(|keeper| keeper.look(progressive, status));
-                warning.iter().for_each(|warning| screen.display.warn(warning));
-                show(&mut screen.display, status);
-            }
-        });
+    let mut is_stopping = false;
+    let (job, plan) = (options.job.clone(), options.plan.clone());
+    let (status, film) = studio.render(job, plan, film, |progressive, status| {
+        status.messages.iter().for_each(|message| screen.warn(message));
+        if status.phase.is_over() {
+            return;
+        }
+        if interrupt.is_set() && !is_stopping {
+            is_stopping = true;
+            let hint = "; press Ctrl-C again to exit at once without writing";
+            let hint = if interrupt.is_by_hand() { hint } else { "" };
+            let end = match options.frame {
+                Some(frame) => format!("dropping frame {frame}; the others are complete"),
+                None => "finishing the current samples and writing the files".to_owned(),
+            };
+            screen.display.say(&format!("{}: {end}{hint}", interrupt.cause()));
+        }
+        let warning = keeper.as_mut().and_then(|keeper| keeper.look(progressive, status));
+        warning.iter().for_each(|warning| screen.display.warn(warning));
+        show(&mut screen.display, status);
+    });
     let names: Vec<String> = options.outputs.iter().map(|output| output.path.shown()).collect();
     let guard = interrupt.while_writing(names.join(" and "));
     let begin = Instant::now();
@@ -109,32 +111,26 @@ pub(super) fn render(
     if matches!(status.phase, Phase::Failed(_)) {
         journal::write_report();
     }
-    let outcome = outcome(options, &status, film.as_ref(), &written);
-    (Rendered { status, film, written, writing: begin.elapsed() }, outcome)
+    let done = Rendered { status, film, written, writing: begin.elapsed() };
+    let outcome = outcome(options, &done);
+    (done, outcome)
 }
 
 /// The result of a render and of writing its files.
-fn outcome(
-    options: &BatchOptions,
-    status: &Status,
-    film: Option<&Film>,
-    written: &Written,
-) -> Result<(), Failure> {
+fn outcome(options: &BatchOptions, done: &Rendered) -> Result<(), Failure> {
+    let Rendered { status, film, written, .. } = done;
     let failures = written.failures.join("; ");
     let Phase::Failed(reason) = &status.phase else {
         return if failures.is_empty() { Ok(()) } else { Err(Failure::Run(anyhow!(failures))) };
     };
-    let held = film.filter(|_| !written.files.is_empty()).map_or(0, Film::sample_count);
-    let kept = |path: &Path| Some((checkpoint::read_head(path).ok()?.samples.count(), path.shown()));
-    Err(match options.checkpoint().and_then(kept) {
+    let files: Vec<String> = written.files.iter().map(ShownPath::shown).collect();
+    let now = film.as_ref().filter(|_| !files.is_empty()).map(|film| (film.sample_count(), files.join(", ")));
+    let before = |path: &Path| Some((checkpoint::read_head(path).ok()?.samples.count(), path.shown()));
+    Err(match now.or_else(|| before(options.checkpoint()?)) {
         _ if !failures.is_empty() => Failure::Run(anyhow!("{reason}; {failures}")),
-        _ if held > 0 => {
-            let files = written.files.iter().map(ShownPath::shown).collect::<Vec<_>>().join(", ");
-            Failure::BrokeOff(anyhow!(
-                "{reason}; the {held} samples per pixel rendered before are in {files}"
-            ))
+        Some((held, files)) => {
+            Failure::BrokeOff(anyhow!("{reason}; {held} samples per pixel are in {files}"))
         }
-        Some((kept, path)) => Failure::BrokeOff(anyhow!("{reason}; {kept} samples per pixel are in {path}")),
         None => Failure::Run(anyhow!("{reason}")),
     })
 }
@@ -144,35 +140,26 @@ pub(super) const STEPS: u64 = 1000;
 
 /// Shows the state of a render that has taken `elapsed` so far.
 pub(super) fn show(display: &mut Display, plan: &Plan, status: &Status, elapsed: Duration) {
-    let left = seconds_left(plan, status);
-    let done = elapsed.as_secs_f64();
+    let (left, done) = (seconds_left(plan, status), elapsed.as_secs_f64());
     // The first step until the end can be predicted.
     let share = left.map_or(0.0, |left| done / (done + left).max(f64::MIN_POSITIVE));
-    display.update((share * STEPS as f64) as u64, || so_far(status, elapsed, left));
-}
-
-/// The render's progress. `elapsed` is the time since its start, and `left` the seconds to its end, if predictable.
-fn so_far(status: &Status, elapsed: Duration, left: Option<f64>) -> String {
-    if status.phase == Phase::Preparing {
-        return "preparing the scene".to_owned();
-    }
-    let error = status.error.map_or_else(String::new, |e| format!("error {:.2e}, ", e.rmse));
-    let left = left.map_or_else(String::new, |left| format!("{} left, ", seconds(left)));
-    format!(
-        "{error}{} spp, {left}{}, {:.1} Mpaths/s",
-        status.samples_per_pixel,
-        seconds(elapsed.as_secs_f64()),
-        status.paths_per_second() / 1e6,
-    )
+    display.update((share * STEPS as f64) as u64, || {
+        if status.phase == Phase::Preparing {
+            return "preparing the scene".to_owned();
+        }
+        let error = status.error.map_or_else(String::new, |e| format!("error {:.2e}, ", e.rmse));
+        let left = left.map_or_else(String::new, |left| format!("{} left, ", seconds(left)));
+        let (samples, speed) = (status.samples_per_pixel, status.paths_per_second() / 1e6);
+        format!("{error}{samples} spp, {left}{}, {speed:.1} Mpaths/s", seconds(done))
+    });
 }
 
 /// Seconds until the first stop condition is met, if that can be predicted.
 fn seconds_left(plan: &Plan, status: &Status) -> Option<f64> {
-    let added = status.added();
-    if added == 0 {
+    if status.added() == 0 {
         return None;
     }
-    let per_sample = status.trace.as_secs_f64() / added as f64;
+    let per_sample = status.seconds_per_sample();
     let held = status.samples_per_pixel as f64;
     let by_samples = (status.planned_samples_per_pixel as f64 - held) * per_sample;
     let by_time = plan.stop.time_limit().map(|limit| limit.saturating_sub(status.elapsed).as_secs_f64());

@@ -17,15 +17,6 @@ pub struct Studio<'a> {
     interrupt: &'a Interrupt,
 }
 
-/// Events during a render.
-pub enum Event<'a> {
-    Warning(&'a str),
-    /// A signal arrived, and the render will stop.
-    Stopping,
-    /// The render's state, at least one per [`Progressive::LOOK`].
-    Status(&'a Progressive, &'a Status),
-}
-
 impl<'a> Studio<'a> {
     /// Makes the renderer and starts the render thread.
     ///
@@ -43,29 +34,27 @@ impl<'a> Studio<'a> {
         Plan { pass_target: Plan::BATCH_PASS, ..Plan::until(Stop::at_samples(samples)) }
     }
 
-    /// Renders a picture, or continues its `film`, until the plan ends or a signal arrives. Returns the last status and
-    /// the film so far. A panic in `look` ends the render as a failure.
+    /// Renders a picture, or continues its `film`, until the plan ends or a signal arrives. `look` sees the state, at
+    /// least once per [`Progressive::LOOK`]. Returns the last status and the film so far. A panic in `look` ends the
+    /// render as a failure.
     pub fn render(
         &mut self,
         job: RenderJob,
         plan: Plan,
         film: Option<Film>,
-        mut look: impl FnMut(Event),
+        mut look: impl FnMut(&Progressive, &Status),
     ) -> (Status, Option<Film>) {
         let Studio { backend, renderer, progressive, interrupt } = self;
         let backend = (*backend).clone();
         let request = RenderRequest { job, backend, renderer: renderer.take(), plan, film };
-        let (mut warned, mut is_stopping) = (0, false);
+        let mut is_stopping = false;
         let watched = catch_unwind(AssertUnwindSafe(|| {
             progressive.watch(request, |progressive, status| {
-                status.messages.iter().skip(warned).for_each(|message| look(Event::Warning(message)));
-                warned = status.messages.len();
                 if interrupt.is_set() && !is_stopping && !status.phase.is_over() {
                     is_stopping = true;
-                    look(Event::Stopping);
                     progressive.stop();
                 }
-                look(Event::Status(progressive, status));
+                look(progressive, status);
             })
         }));
         let status = watched.unwrap_or_else(|payload| {
@@ -103,9 +92,8 @@ mod tests {
         let options = crate::batch::tests::options(&flags);
         let interrupt = Interrupt::unheard();
         let Ok(mut studio) = Studio::open(&options.backend, &interrupt) else { panic!("no CPU") };
-        let (status, film) = studio.render(options.job.clone(), options.plan.clone(), None, |event| {
-            let has_samples = matches!(event, Event::Status(_, status) if status.samples_per_pixel > 0);
-            assert!(!has_samples, "a slip of the onlooker");
+        let (status, film) = studio.render(options.job.clone(), options.plan.clone(), None, |_, status| {
+            assert!(status.samples_per_pixel == 0, "a slip of the onlooker");
         });
         let reason = match status.phase {
             Phase::Failed(reason) => reason,

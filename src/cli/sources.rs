@@ -101,19 +101,6 @@ pub(super) struct CameraFlags {
     pub focus_distance: Option<f64>,
 }
 
-#[cfg(feature = "window")]
-impl PictureFlags {
-    /// Whether any of these flags is given.
-    pub fn is_given(&self) -> bool {
-        *self != PictureFlags::default()
-    }
-
-    /// Whether they name a scene or a stage.
-    pub fn has_source(&self) -> bool {
-        self.scene.is_some() || self.stage.is_some()
-    }
-}
-
 impl PictureFlags {
     /// Replaces values of the recipe by those of the flags.
     pub fn change(&self, recipe: &mut Recipe) {

@@ -1,7 +1,7 @@
 //! The flags of the window.
 
 use super::render::{DrawWith, RenderFlags, plan};
-use super::sources::{self, ChosenRecipe};
+use super::sources::{self, ChosenRecipe, PictureFlags};
 use crate::backends::BackendChoice;
 use crate::job::output::{is_named_picture, read_description};
 use crate::job::recipe::Recipe;
@@ -84,10 +84,10 @@ pub(super) fn options(
         stage,
         file: file.map(PathBuf::from),
         is_size_given: picture.size.is_some(),
-        is_picture_given: picture.is_given() || saved.is_some(),
+        is_picture_given: *picture != PictureFlags::default() || saved.is_some(),
         is_device_given: matches.contains_id("BackendFlags"),
         mine,
-        is_saved: saved.is_some() && !picture.has_source(),
+        is_saved: saved.is_some() && picture.scene.is_none() && picture.stage.is_none(),
         resume: files.resume.clone(),
         is_fresh: flags.window.fresh,
         autosave_every: flags.window.autosave_every,

@@ -133,7 +133,7 @@ impl Renderer for Baseline {
         for (sum, mean) in film.halves_mut()[0].iter_mut().zip(picture.pixels) {
             sum.add(PixelSum(mean.map(|x| (x * scale).round() as u64)));
         }
-        Ok(stats.into())
+        Ok(Outcome::Added(stats))
     }
 }
 

@@ -184,7 +184,7 @@ impl Renderer for CpuRenderer {
         film.record(range, tiles.rejected)?;
         let trace = start.elapsed();
         self.begin_better_hierarchy(job, trace);
-        Ok(Outcome::from(Stats {
+        Ok(Outcome::Added(Stats {
             paths,
             rays: tiles.rays,
             rejected: tiles.rejected,

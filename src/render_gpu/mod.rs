@@ -203,7 +203,7 @@ impl Renderer for GpuRenderer {
             let traced = this.trace(loaded, &range, film, control);
             this.completed(loaded, traced, range, film, control.cancel)
         })?;
-        Ok(stats.into())
+        Ok(Outcome::Added(stats))
     }
 
     fn request_readback(&mut self) -> Result<(), RenderError> {

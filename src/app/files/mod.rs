@@ -10,7 +10,7 @@ use crate::app::model::{Document, Wish};
 use crate::app::toolkit::{Answers, Toasts};
 use crate::app::tracing::subject::Subject;
 use crate::backends::BackendChoice;
-use crate::batch::{Event, FramesOptions, Studio, write_frames};
+use crate::batch::{FramesOptions, Studio, write_frames};
 use crate::comparison::Picture;
 use crate::denoise::{self, Denoised};
 use crate::film::Film;
@@ -97,10 +97,8 @@ impl Files {
         let words = format!("Rendering {width} × {height} to save it");
         self.make(context, words, Some(name), move |interrupt, look| {
             let mut studio = Studio::open(&backend, interrupt).map_err(|failure| failure.to_string())?;
-            let (status, film) = studio.render(job, Studio::plan(samples), None, |event| {
-                if let Event::Status(_, status) = event {
-                    look(status.samples_per_pixel as f64 / samples.max(1) as f64);
-                }
+            let (status, film) = studio.render(job, Studio::plan(samples), None, |_, status| {
+                look(status.samples_per_pixel as f64 / samples.max(1) as f64);
             });
             let film = film.filter(|film| film.sample_count() > 0).ok_or_else(|| match &status.phase {
                 Phase::Failed(reason) => reason.clone(),

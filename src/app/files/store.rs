@@ -326,7 +326,7 @@ impl Shelf {
         }
         for (path, film, about) in self.waiting.drain(..).filter(|_| self.folder.is_some()) {
             if write(&path, &film, &about).is_err() {
-                let saved = saved::rescue(&[], about.get(key::SCENE).unwrap_or("film"), &film, &about);
+                let saved = saved::rescue(&[], &film, &about);
                 let words = |path: PathBuf| format!("the picture's samples were saved in {}", path.display());
                 console::note(&saved.map_or_else(|lost| lost, words));
             }

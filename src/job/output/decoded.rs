@@ -30,20 +30,13 @@ impl Damage {
 }
 
 /// The error of a file that ends before its last pixel.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{reason}")]
 pub struct Incomplete {
     /// The pixels that it has, fewer than its size calls for.
     pub picture: Box<ReadPicture>,
     pub reason: String,
 }
-
-impl std::fmt::Display for Incomplete {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.write_str(&self.reason)
-    }
-}
-
-impl std::error::Error for Incomplete {}
 
 /// A picture as its file holds it, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,25 +110,21 @@ fn half_step(x: f32) -> f64 {
 /// Largest number of pixels that is read.
 pub(super) const PIXEL_LIMIT: u64 = 1 << 28;
 
-/// Number of pixels, or an error if the size is out of range.
-pub(super) fn pixel_count(width: u32, height: u32) -> Result<usize> {
+/// Maximum memory per pixel while a picture is read: for the file's data, the decoded data, and the numbers with their
+/// quantisation steps.
+const BYTES_PER_PIXEL: u64 = 80;
+
+/// Number of pixels, or an error if the size is out of range or the picture does not fit into memory, with `more` extra
+/// bytes per pixel.
+pub(super) fn pixel_count(width: u32, height: u32, more: u64) -> Result<usize> {
     let count = u64::from(width) * u64::from(height);
     ensure!(
         (1..=PIXEL_LIMIT).contains(&count),
         "its size is {width}x{height}; only 1 to {PIXEL_LIMIT} pixels can be read"
     );
-    Ok(count as usize)
-}
-
-/// Maximum memory per pixel while a picture is read: for the file's data, the decoded data, and the numbers with their
-/// quantisation steps.
-const BYTES_PER_PIXEL: u64 = 80;
-
-/// Returns an error if the picture would not fit into memory, with `more` extra bytes per pixel.
-pub(super) fn check_memory(width: u32, height: u32, more: u64) -> Result<()> {
-    let bytes = u64::from(width) * u64::from(height) * (BYTES_PER_PIXEL + more);
     let what = || format!("a picture of {width}x{height} pixels");
-    Ok(memory::check(what, bytes, "close other programs or make it smaller")?)
+    memory::check(what, count * (BYTES_PER_PIXEL + more), "close other programs or make it smaller")?;
+    Ok(count as usize)
 }
 
 /// A note if some pixels are translucent.

@@ -1,6 +1,6 @@
 //! OpenEXR as any program writes it.
 
-use super::decoded::{ReadPicture, Values, check_memory, note_on_alpha, note_on_primaries, pixel_count};
+use super::decoded::{ReadPicture, Values, note_on_alpha, note_on_primaries, pixel_count};
 use crate::film::checkpoint;
 use anyhow::{Result, anyhow, bail};
 use exr::error::Error;
@@ -41,7 +41,10 @@ pub(super) fn read(mut reader: impl BufRead + Seek, length: u64, layer: Option<&
     let Layer { part, channels, alpha, .. } = choose(&layers, &image, layer)?;
     let compression = part.encoding.compression;
     let may_lose = compression.may_loose_data().then(|| format!("its {compression} may change the values"));
-    let mut notes: Vec<String> = note_on_colours(&image).into_iter().chain(may_lose).collect();
+    let space = image.attributes.chromaticities;
+    let primaries =
+        space.map(|space| [space.red, space.green, space.blue, space.white].map(|Vec2(x, y)| [x, y]));
+    let mut notes: Vec<String> = primaries.and_then(note_on_primaries).into_iter().chain(may_lose).collect();
     if layer.is_none() && layers.len() > 1 {
         notes.push(format!("it has other layers, which are ignored: {}", names(&layers)));
     }
@@ -129,17 +132,10 @@ fn names(layers: &[Layer]) -> String {
     names.collect::<Vec<_>>().join(", ")
 }
 
-/// A note if the colours of a picture are not those of sRGB.
-fn note_on_colours(image: &FlatImage) -> Option<String> {
-    let space = image.attributes.chromaticities.as_ref()?;
-    note_on_primaries([space.red, space.green, space.blue, space.white].map(|Vec2(x, y)| [x, y]))
-}
-
 /// Width and height, if there is memory for the picture and `bytes` more per pixel.
 fn size(Vec2(width, height): Vec2<usize>, bytes: usize) -> Result<(u32, u32)> {
     let [width, height] = [width, height].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
-    pixel_count(width, height)?;
-    check_memory(width, height, bytes as u64)?;
+    pixel_count(width, height, bytes as u64)?;
     Ok((width, height))
 }
 

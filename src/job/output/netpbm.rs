@@ -3,138 +3,194 @@
 //! Common faults are repaired and reported. Sources: the manual pages of netpbm; Paul Debevec, "PFM Portable FloatMap
 //! Image Format".
 
-use super::decoded::{Damage, Incomplete, ReadPicture, Values, check_memory, pixel_count};
+use super::decoded::{Damage, Incomplete, ReadPicture, Values, pixel_count};
 use crate::film::Film;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use std::borrow::Cow;
 use std::io::{self, Write};
-use std::ops::ControlFlow;
 
 /// Reads a picture from the bytes of a file; of several in one file, the last.
 pub(super) fn read(file: &[u8]) -> Result<ReadPicture> {
     ensure!(!file.is_empty(), "it is empty: the program that writes it has ended early, or not begun");
-    let mut damages = Vec::new();
-    let mut file = Cow::Borrowed(file);
-    if let Some(text) = from_utf16(&file) {
-        damages.push(Damage::new(
+    let text_of_bytes = from_utf16(file);
+    let whole = text_of_bytes.as_deref().unwrap_or(file);
+    let unmarked = whole.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(whole);
+    let first = header(unmarked).with_context(|| foreign(unmarked))?;
+    let last = std::iter::successors(Some(first), |rest| next_picture(rest)).last().unwrap_or(first);
+    let mut picture = match last[1] {
+        b'2' => text(last, "P2", 1),
+        b'3' => text(last, "P3", 3),
+        b'f' => floats(last, 1),
+        b'F' => floats(last, 3),
+        _ => bytes(last),
+    }?;
+    let around = [
+        (
+            text_of_bytes.is_some(),
             "the file is text of two bytes per letter (UTF-16), which no viewer takes for a PPM",
             "PowerShell's > writes it so: use cmd /c \"program > picture.ppm\", or PowerShell 7, or let the program open the \
              file itself",
-        ));
-        file = Cow::Owned(text);
-    } else if let Some(rest) = file.strip_prefix(b"\xEF\xBB\xBF") {
-        damages.push(Damage::new(
+        ),
+        (
+            unmarked.len() < whole.len(),
             "the file begins with a byte order mark",
             "write it without one (UTF-8 without BOM): a PPM begins with P3 or P6",
-        ));
-        file = Cow::Owned(rest.to_owned());
-    }
-    let mut start = header(&file).with_context(|| foreign(&file))?;
-    if start > 0 {
-        damages.push(Damage::new(
+        ),
+        (
+            first.len() < unmarked.len(),
             "there is other text before the header",
             "write only the picture to standard output; messages belong to std::clog",
-        ));
+        ),
+        (
+            last.len() < first.len(),
+            "the file has several pictures, one after the other; this is the last",
+            "write it with > instead of >>, which appends",
+        ),
+    ];
+    let around = around.into_iter().filter(|(is_so, ..)| *is_so);
+    picture.damages.splice(..0, around.map(|(_, title, remedy)| Damage::new(title, remedy)));
+    Ok(picture)
+}
+
+/// The file from its second picture on, if it has several.
+fn next_picture(file: &[u8]) -> Option<&[u8]> {
+    if matches!(file[1], b'2' | b'3') {
+        return lines(file).skip(1).find(|rest| is_header(rest));
     }
-    let mut is_appended = false;
-    loop {
-        let mut own = Vec::new();
-        match read_at(&file[start..], &mut own)? {
-            ControlFlow::Continue(offset) => {
-                is_appended = true;
-                start += offset;
+    let (_, data, needed) = byte_header(file).ok()?;
+    let rest = data.get(needed..)?.trim_ascii_start();
+    is_header(rest).then_some(rest)
+}
+
+/// The file from each of its lines on.
+fn lines(file: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let ends = file.split_inclusive(|byte| matches!(byte, b'\n' | b'\r'));
+    ends.scan(file, |rest, line| Some(std::mem::replace(rest, &rest[line.len()..])))
+}
+
+/// A picture of integers while it is read.
+#[derive(Default)]
+struct Integers {
+    format: &'static str,
+    channels: usize,
+    width: u32,
+    height: u32,
+    most: u16,
+    damages: Vec<Damage>,
+    notes: Vec<String>,
+}
+
+impl Integers {
+    /// Sets width, height and largest value.
+    fn set_head(&mut self, [width, height, most]: [u64; 3]) -> Result<()> {
+        (self.width, self.height, _) = checked([width, height])?;
+        self.most = match u16::try_from(most) {
+            Ok(256) => {
+                let note = "its largest value is 256, which is read as 255; write 255 to the header";
+                self.notes.push(note.to_owned());
+                255
             }
-            ControlFlow::Break(picture) => {
-                damages.extend(is_appended.then(|| {
-                    Damage::new(
-                        "the file has several pictures, one after the other; this is the last",
-                        "write it with > instead of >>, which appends",
-                    )
-                }));
-                damages.append(&mut own);
-                return Ok(ReadPicture { damages, ..picture });
-            }
+            Ok(most @ 1..) => most,
+            _ => bail!("its largest value is {most}; write 255 after width and height"),
+        };
+        Ok(())
+    }
+
+    /// How many values the picture needs.
+    fn count(&self) -> usize {
+        self.width as usize * self.height as usize * self.channels
+    }
+
+    fn bytes_per_value(&self) -> usize {
+        if self.most > 255 { 2 } else { 1 }
+    }
+
+    /// Notes a fault if there `is` one.
+    fn fault(&mut self, is: bool, title: impl Into<String>, remedy: &'static str) {
+        self.damages.extend(is.then(|| Damage::new(title, remedy)));
+    }
+
+    /// Removes every fourth value if there are four per pixel.
+    fn drop_alpha(&mut self, values: &mut Vec<i64>) {
+        let has_alpha = self.channels == 3 && values.len() == self.count() / 3 * 4;
+        self.fault(
+            has_alpha,
+            "there are four numbers per pixel, probably with an alpha channel, and a PPM has three",
+            "write only red, green and blue",
+        );
+        if has_alpha {
+            *values = values.chunks_exact(4).flat_map(|pixel| &pixel[..3]).copied().collect();
         }
+    }
+
+    /// The picture of values that may be out of range. `missing` says what the file lacks if they are too few.
+    fn picture(mut self, values: &[i64], missing: impl FnOnce() -> String) -> Result<ReadPicture> {
+        let (count, most) = (self.count(), i64::from(self.most));
+        let values = &values[..count.min(values.len())];
+        let outside = values.iter().filter(|value| !(0..=most).contains(*value)).count();
+        self.fault(
+            outside > 0,
+            format!("{outside} numbers are below 0 or above {most}"),
+            "clamp each channel before it is scaled: int(256 * clamp(x, 0, 0.999)); negative integers often come from NaN",
+        );
+        let Integers { format, channels, width, height, most, damages, notes } = self;
+        let value =
+            |pixel: &[i64], channel: usize| pixel[channel.min(channels - 1)].clamp(0, most.into()) as u16;
+        let rgb = values.chunks_exact(channels).map(|pixel| [0, 1, 2].map(|c| value(pixel, c))).collect();
+        let is_whole = values.len() == count;
+        let values = Values::Integers { most, rgb };
+        let picture = ReadPicture { width, height, format, values, damages, notes, stated: None };
+        if is_whole {
+            return Ok(picture);
+        }
+        let picture = Box::new(ReadPicture { damages: Vec::new(), ..picture });
+        Err(Incomplete { picture, reason: missing() }.into())
     }
 }
 
-/// The picture, or where the next one begins.
-type Found = ControlFlow<ReadPicture, usize>;
-
-fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> Result<Found> {
+/// A picture of bytes without its values, what follows its header, and how many bytes of this the picture needs.
+fn byte_header(file: &[u8]) -> Result<(Integers, &[u8], usize)> {
+    let (format, channels) = if file[1] == b'5' { ("P5", 1) } else { ("P6", 3) };
+    let mut picture = Integers { format, channels, ..Integers::default() };
     let mut words = Words { file, at: 2 };
-    let (format, channels) = match file[1] {
-        b'2' => return text(file, "P2", 1, damages),
-        b'3' => return text(file, "P3", 3, damages),
-        b'f' => return floats(words, 1).map(Found::Break),
-        b'F' => return floats(words, 3).map(Found::Break),
-        b'5' => ("P5", 1),
-        _ => ("P6", 3),
-    };
-    let size = [words.number("width")?, words.number("height")?];
-    let most = words.number("largest value")?;
-    let mut notes = Vec::new();
-    let ((width, height, count), most) = (checked(size)?, checked_most(most, &mut notes)?);
-    let bytes_per_value = if most > 255 { 2 } else { 1 };
-    let needed = count * channels * bytes_per_value;
-    let mut data = Cow::Borrowed(words.payload(needed));
-    if let Some(body) = text_of(&data) {
-        let as_text = format!("P{} {width} {height} {most}\n{body}", if channels == 3 { 3 } else { 2 });
-        let mut own = Vec::new();
-        if let Ok(ControlFlow::Break(picture)) = text(as_text.as_bytes(), format, channels, &mut own) {
+    let head = [words.number("width")?, words.number("height")?, words.number("largest value")?];
+    picture.set_head(head)?;
+    let needed = picture.count() * picture.bytes_per_value();
+    Ok((picture, words.payload(needed), needed))
+}
+
+/// Reads numbers of one or two bytes.
+fn bytes(file: &[u8]) -> Result<ReadPicture> {
+    let (mut picture, data, needed) = byte_header(file)?;
+    let Integers { format, channels, width, height, most, .. } = picture;
+    if let Some(body) = text_of(data) {
+        let as_text = format!("P3 {width} {height} {most}\n{body}");
+        if let Ok(mut read) = text(as_text.as_bytes(), format, channels) {
+            let title = format!("the header says {format}, bytes, but numbers follow as text");
             let remedy = "write P3 to the header, or the bytes themselves instead of numbers as text";
-            damages.push(Damage::new(
-                format!("the header says {format}, bytes, but numbers follow as text"),
-                remedy,
-            ));
-            damages.append(&mut own);
-            return Ok(Found::Break(picture));
+            read.damages.insert(0, Damage::new(title, remedy));
+            return Ok(read);
         }
     }
-    if data.len() < needed {
-        let known = data.len() / (channels * bytes_per_value);
-        let reason = format!(
+    let repaired = without_returns(data, needed);
+    picture.fault(
+        repaired.is_some(),
+        "the file was written in text mode: each byte 10 has become 13 and 10",
+        "open the file in binary mode (std::ios::binary); for standard output, _setmode(_fileno(stdout), _O_BINARY)",
+    );
+    let data = repaired.as_deref().unwrap_or(data);
+    let mut values = values_of(data, picture.bytes_per_value());
+    picture.drop_alpha(&mut values);
+    if values.len() > picture.count() {
+        picture.notes.push(format!("{} bytes after the pixels are ignored", data.len() - needed));
+    }
+    picture.picture(&values, || {
+        format!(
             "it has {} of the {needed} bytes that {width} x {height} pixels need; write all rows, in binary mode, and not \
              through PowerShell's >, which changes bytes",
             data.len()
-        );
-        let values: Vec<i64> = values_of(&data, bytes_per_value);
-        let values = &values[..known * channels];
-        let picture = integers([width, height], format, most, channels, values, notes, damages);
-        return Err(Incomplete { picture: Box::new(picture), reason }.into());
-    }
-    if channels == 3 && data.len() == needed / 3 * 4 {
-        damages.push(Damage::new(FOUR_VALUES, DROP_ALPHA));
-        let values = values_of(&data, bytes_per_value);
-        let values: Vec<i64> = without_fourth(&values);
-        return Ok(Found::Break(integers([width, height], format, most, channels, &values, notes, damages)));
-    }
-    if let Some(repaired) = without_returns(&data, needed) {
-        damages.push(Damage::new(
-            "the file was written in text mode: each byte 10 has become 13 and 10",
-            "open the file in binary mode (std::ios::binary); for standard output, _setmode(_fileno(stdout), _O_BINARY)",
-        ));
-        data = Cow::Owned(repaired);
-    }
-    let rest = &data[needed..];
-    if !rest.is_empty() {
-        let blanks = rest.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
-        if matches!(data, Cow::Borrowed(_)) && is_header(&rest[blanks..]) {
-            return Ok(Found::Continue(file.len() - rest.len() + blanks));
-        }
-        notes.push(format!("{} bytes after the pixels are ignored", rest.len()));
-    }
-    check_memory(width, height, 0)?;
-    let values = values_of(&data[..needed], bytes_per_value);
-    Ok(Found::Break(integers([width, height], format, most, channels, &values, notes, damages)))
-}
-
-const FOUR_VALUES: &str =
-    "there are four numbers per pixel, probably with an alpha channel, and a PPM has three";
-const DROP_ALPHA: &str = "write only red, green and blue";
-
-fn without_fourth(values: &[i64]) -> Vec<i64> {
-    values.chunks_exact(4).flat_map(|pixel| &pixel[..3]).copied().collect()
+        )
+    })
 }
 
 fn values_of(data: &[u8], bytes_per_value: usize) -> Vec<i64> {
@@ -152,49 +208,15 @@ fn text_of(data: &[u8]) -> Option<&str> {
     std::str::from_utf8(data).ok().filter(|_| is_all)
 }
 
-/// The picture of values that may be out of range.
-fn integers(
-    [width, height]: [u32; 2],
-    format: &'static str,
-    most: u16,
-    channels: usize,
-    values: &[i64],
-    notes: Vec<String>,
-    damages: &mut Vec<Damage>,
-) -> ReadPicture {
-    let outside = values.iter().filter(|value| !(0..=most.into()).contains(*value)).count();
-    if outside > 0 {
-        damages.push(Damage::new(
-            format!("{outside} numbers are below 0 or above {most}"),
-            "clamp each channel before it is scaled: int(256 * clamp(x, 0, 0.999)); negative integers often come from NaN",
-        ));
-    }
-    let value = |pixel: &[i64], channel: usize| pixel[channel.min(channels - 1)].clamp(0, most.into()) as u16;
-    let rgb = values.chunks_exact(channels).map(|pixel| [0, 1, 2].map(|c| value(pixel, c))).collect();
-    ReadPicture {
-        width,
-        height,
-        format,
-        values: Values::Integers { most, rgb },
-        damages: Vec::new(),
-        notes,
-        stated: None,
-    }
-}
-
 /// Reads numbers written as text, leaving out what does not belong.
-fn text(file: &[u8], format: &'static str, channels: usize, damages: &mut Vec<Damage>) -> Result<Found> {
-    let (mut messages, mut bracketed, mut lines, mut at) = (0, 0, Vec::new(), 0);
-    for line in file.split_inclusive(|byte| matches!(byte, b'\n' | b'\r')) {
-        if at > 0 && is_header(line) {
-            return Ok(Found::Continue(at));
-        }
-        let content = if at == 0 { &line[2..] } else { line };
-        at += line.len();
-        let content = content.split(|byte| *byte == b'#').next().unwrap_or_default();
+fn text(file: &[u8], format: &'static str, channels: usize) -> Result<ReadPicture> {
+    let mut picture = Integers { format, channels, ..Integers::default() };
+    let (mut messages, mut is_bracketed, mut lines) = (0, false, Vec::new());
+    for line in file[2..].split(|byte| matches!(byte, b'\n' | b'\r')) {
+        let content = line.split(|byte| *byte == b'#').next().unwrap_or_default();
         let mut content = String::from_utf8_lossy(content.trim_ascii());
         if let Some(bare) = without_brackets(&content) {
-            bracketed += 1;
+            is_bracketed = true;
             content = Cow::Owned(bare);
         }
         if content.starts_with(char::is_alphabetic) && !content.starts_with("nan") {
@@ -203,45 +225,36 @@ fn text(file: &[u8], format: &'static str, channels: usize, damages: &mut Vec<Da
             lines.push(content);
         }
     }
-    if messages > 0 {
-        damages.push(Damage::new(
-            format!("{messages} lines of the file are messages, not numbers"),
-            "write messages such as \"Scanlines remaining\" to std::clog, not to std::cout",
-        ));
-    }
-    if bracketed > 0 {
-        damages.push(Damage::new(
-            "there are brackets or semicolons between the numbers",
-            "write the three numbers of a pixel alone, separated by spaces: in Python, print(r, g, b) and not print((r, g, b))",
-        ));
-    }
-    let words = || lines.iter().flat_map(|line| line.split_ascii_whitespace());
-    let head: Vec<i64> = words().take(3).filter_map(|word| word.trim_matches(',').parse().ok()).collect();
-    let [width, height, most] = *head.as_slice() else {
+    picture.fault(
+        messages > 0,
+        format!("{messages} lines of the file are messages, not numbers"),
+        "write messages such as \"Scanlines remaining\" to std::clog, not to std::cout",
+    );
+    picture.fault(
+        is_bracketed,
+        "there are brackets or semicolons between the numbers",
+        "write the three numbers of a pixel alone, separated by spaces: in Python, print(r, g, b) and not print((r, g, b))",
+    );
+    let mut words = lines.iter().flat_map(|line| line.split_ascii_whitespace());
+    let head = words.by_ref().take(3).filter_map(|word| word.trim_matches(',').parse().ok());
+    let Ok(mut head) = <[i64; 3]>::try_from(head.collect::<Vec<i64>>()) else {
         bail!("its header is not complete; {HEADER}");
     };
-    let mut head = [width, height, most].map(|number| number.max(0) as u64);
-    let words = || words().skip(3);
     // The largest value may come first, as the number of values shows.
-    let numbers = words().count() as u64;
-    if head[0] == 255 && numbers == head[1].saturating_mul(head[2]).saturating_mul(channels as u64) {
-        damages.push(Damage::new("the largest value stands before width and height", HEADER));
-        head.rotate_left(1);
+    let numbers = head[1].checked_mul(head[2]).and_then(|pixels| pixels.checked_mul(channels as i64));
+    let is_rotated = head[0] == 255 && numbers == Some(words.clone().count() as i64);
+    picture.fault(is_rotated, "the largest value stands before width and height", HEADER);
+    head.rotate_left(usize::from(is_rotated));
+    picture.set_head(head.map(|number| number.max(0) as u64))?;
+    if let Some(bytes) = body_of_bytes(file, picture.count()) {
+        picture.damages.clear();
+        let title = format!("the header says {format}, text, but bytes follow");
+        picture.fault(true, title, "write P6 to the header, or numbers as text");
+        return picture.picture(&values_of(bytes, 1), String::new);
     }
-    let mut notes = Vec::new();
-    let [width, height, most] = head;
-    let ((width, height, count), most) = (checked([width, height])?, checked_most(most, &mut notes)?);
-    let needed = count * channels;
-    if let Some(bytes) = body_of_bytes(file, needed) {
-        damages.clear();
-        let remedy = "write P6 to the header, or numbers as text";
-        damages.push(Damage::new(format!("the header says {format}, text, but bytes follow"), remedy));
-        let values = values_of(bytes, 1);
-        return Ok(Found::Break(integers([width, height], format, most, channels, &values, notes, damages)));
-    }
-    let has_commas = words().any(|word| word.trim_end_matches(',').contains(','));
+    let has_commas = words.clone().any(|word| word.trim_end_matches(',').contains(','));
     // With decimal commas, there are as many words as numbers.
-    let has_decimal_commas = has_commas && words().count() >= needed;
+    let has_decimal_commas = has_commas && words.clone().count() >= picture.count();
     let mut odd = 0;
     let mut values: Vec<i64> = Vec::new();
     let mut add = |word: &str| {
@@ -250,69 +263,53 @@ fn text(file: &[u8], format: &'static str, channels: usize, damages: &mut Vec<Da
             word.parse::<f64>().map_or(-1, |x| if x.is_nan() { -1 } else { x as i64 })
         }));
     };
-    for word in words() {
+    for word in words.clone() {
         if has_decimal_commas {
             add(&word.trim_end_matches(',').replace(',', "."));
         } else {
             word.split(',').filter(|part| !part.is_empty()).for_each(&mut add);
         }
     }
-    if has_decimal_commas {
-        damages.push(Damage::new(
-            "numbers have decimal commas",
-            "write whole numbers, and a point in any other; the program's locale should be \"C\"",
-        ));
-    } else if words().any(|word| word.contains(',')) {
-        damages.push(Damage::new("there are commas between the numbers", "separate them by spaces"));
-    }
-    if odd > 0 && !has_decimal_commas {
-        damages.push(Damage::new(
-            format!("{odd} values are not whole numbers"),
-            "convert each channel with int(256 * clamp(x, 0, 0.999)) before it is written",
-        ));
-    }
-    let mut channels = channels;
-    let as_read = [
-        (1, 3, "P2, grey, but there are three numbers per pixel", "write P3"),
-        (3, 1, "P3, colours, but there is one number per pixel", "write P2"),
-    ];
-    for (of, really, title, remedy) in as_read {
-        if channels == of && count > 1 && values.len() == count * really {
-            damages.push(Damage::new(format!("the header says {title}"), remedy));
-            channels = really;
-            break;
-        }
-    }
-    let needed = count * channels;
-    if channels == 3 && values.len() == needed / 3 * 4 {
-        damages.push(Damage::new(FOUR_VALUES, DROP_ALPHA));
-        values = without_fourth(&values);
-    }
-    if values.len() < needed {
-        let together = values.iter().filter(|value| **value > 1000 * i64::from(most)).count();
-        ensure!(
-            2 * together < values.len() || together == 0,
-            "its numbers run together; write a space or a new line after each"
-        );
-        let reason = format!(
-            "{width} x {height} pixels need {needed} numbers, but there are {}: {} of {height} rows; check the loops, width \
-             and height of the header, and whether the program ended early",
-            values.len(),
-            values.len() / (channels * width as usize)
-        );
-        values.truncate(values.len() / channels * channels);
-        let picture = integers([width, height], format, most, channels, &values, notes, damages);
-        return Err(Incomplete { picture: Box::new(picture), reason }.into());
-    }
-    if values.len() > needed {
-        damages.push(Damage::new(
-            format!("there are {} numbers, but {width} x {height} pixels need {needed}", values.len()),
-            "let the loops run to image_width - 1 and image_height - 1, and write the same sizes to the header",
-        ));
-    }
-    check_memory(width, height, 0)?;
-    let values = &values[..needed];
-    Ok(Found::Break(integers([width, height], format, most, channels, values, notes, damages)))
+    picture.fault(
+        has_decimal_commas,
+        "numbers have decimal commas",
+        "write whole numbers, and a point in any other; the program's locale should be \"C\"",
+    );
+    let has_commas = !has_decimal_commas && words.any(|word| word.contains(','));
+    picture.fault(has_commas, "there are commas between the numbers", "separate them by spaces");
+    picture.fault(
+        odd > 0 && !has_decimal_commas,
+        format!("{odd} values are not whole numbers"),
+        "convert each channel with int(256 * clamp(x, 0, 0.999)) before it is written",
+    );
+    let (really, title, remedy) = match channels {
+        1 => (3, "the header says P2, grey, but there are three numbers per pixel", "write P3"),
+        _ => (1, "the header says P3, colours, but there is one number per pixel", "write P2"),
+    };
+    let pixels = picture.count() / channels;
+    let is_otherwise = pixels > 1 && values.len() == pixels * really;
+    picture.fault(is_otherwise, title, remedy);
+    picture.channels = if is_otherwise { really } else { channels };
+    picture.drop_alpha(&mut values);
+    let Integers { width, height, most, channels, .. } = picture;
+    let (found, needed) = (values.len(), picture.count());
+    let together = values.iter().filter(|value| **value > 1000 * i64::from(most)).count();
+    ensure!(
+        found >= needed || 2 * together < found || together == 0,
+        "its numbers run together; write a space or a new line after each"
+    );
+    picture.fault(
+        found > needed,
+        format!("there are {found} numbers, but {width} x {height} pixels need {needed}"),
+        "let the loops run to image_width - 1 and image_height - 1, and write the same sizes to the header",
+    );
+    picture.picture(&values, || {
+        format!(
+            "{width} x {height} pixels need {needed} numbers, but there are {found}: {} of {height} rows; check the loops, \
+             width and height of the header, and whether the program ended early",
+            found / (channels * width as usize)
+        )
+    })
 }
 
 /// A line without brackets, semicolons and the names before brackets, if it has some and only numbers remain.
@@ -321,18 +318,13 @@ fn without_brackets(line: &str) -> Option<String> {
     if !line.contains(is_bracket) {
         return None;
     }
-    let bare: Vec<&str> = line
-        .split(is_bracket)
-        .map(|part| part.trim_end_matches(|letter: char| letter.is_alphanumeric() || "_.:".contains(letter)))
-        .zip(line.split(is_bracket))
+    let mut bare = String::new();
+    for part in line.split(is_bracket) {
+        let before = part.trim_end_matches(|letter: char| letter.is_alphanumeric() || "_.:".contains(letter));
         // A name is what stands right before a bracket and begins with a letter.
-        .map(
-            |(before, part)| {
-                if part[before.len()..].starts_with(char::is_alphabetic) { before } else { part }
-            },
-        )
-        .collect();
-    let bare = bare.join(" ");
+        let is_named = part[before.len()..].starts_with(char::is_alphabetic);
+        bare.extend([if is_named { before } else { part }, " "]);
+    }
     let is_number =
         |letter: char| letter.is_ascii_digit() || letter.is_ascii_whitespace() || "+-.,eE".contains(letter);
     (bare.chars().all(is_number) && bare.contains(|letter: char| letter.is_ascii_digit()))
@@ -350,7 +342,8 @@ fn body_of_bytes(file: &[u8], needed: usize) -> Option<&[u8]> {
 }
 
 /// Reads a PFM, whose lowest row comes first.
-fn floats(mut words: Words, channels: usize) -> Result<ReadPicture> {
+fn floats(file: &[u8], channels: usize) -> Result<ReadPicture> {
+    let mut words = Words { file, at: 2 };
     let size = [words.number("width")?, words.number("height")?];
     let word = words.next();
     let scale: f32 = word.parse().unwrap_or(0.0);
@@ -368,7 +361,6 @@ fn floats(mut words: Words, channels: usize) -> Result<ReadPicture> {
             4 * count
         );
     };
-    check_memory(width, height, 0)?;
     let (numbers, _) = pixels.as_chunks::<4>();
     let value = |is_little: bool, bytes: &[u8; 4]| {
         if is_little { f32::from_le_bytes(*bytes) } else { f32::from_be_bytes(*bytes) }
@@ -414,18 +406,7 @@ fn checked([width, height]: [u64; 2]) -> Result<(u32, u32, usize)> {
         "its header says {width} x {height} pixels; write the width and height of the picture"
     );
     let [width, height] = [width, height].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
-    Ok((width, height, pixel_count(width, height)?))
-}
-
-fn checked_most(most: u64, notes: &mut Vec<String>) -> Result<u16> {
-    match u16::try_from(most) {
-        Ok(256) => {
-            notes.push("its largest value is 256, which is read as 255; write 255 to the header".to_owned());
-            Ok(255)
-        }
-        Ok(most @ 1..) => Ok(most),
-        _ => bail!("its largest value is {most}; write 255 after width and height"),
-    }
+    Ok((width, height, pixel_count(width, height, 0)?))
 }
 
 /// The white-space separated words of a header, without comments.
@@ -488,23 +469,17 @@ fn is_header(bytes: &[u8]) -> bool {
     matches!(bytes, [b'P', b'2' | b'3' | b'5' | b'6' | b'F' | b'f', rest @ ..] if rest.first().is_some_and(is_end))
 }
 
-/// Where the picture begins: at once, or at a line after some text.
-fn header(file: &[u8]) -> Option<usize> {
+/// The file from its picture on, which begins at once, or at a line after some text.
+fn header(file: &[u8]) -> Option<&[u8]> {
     // At the start, the first number may follow the letters directly.
     if let [b'P', b'2' | b'3' | b'5' | b'6' | b'F' | b'f', ..] = file {
-        return Some(0);
+        return Some(file);
     }
-    let mut at = 0;
-    for line in file.split_inclusive(|byte| *byte == b'\n') {
-        if is_header(line) {
-            return Some(at);
-        }
-        at += line.len();
-        if line.iter().any(|byte| byte.is_ascii_control() && !byte.is_ascii_whitespace()) {
-            break;
-        }
-    }
-    None
+    let is_binary = |rest: &&[u8]| {
+        let mut line = rest.iter().take_while(|byte| **byte != b'\n');
+        line.any(|byte| byte.is_ascii_control() && !byte.is_ascii_whitespace())
+    };
+    lines(file).find(|rest| is_header(rest) || is_binary(rest)).filter(|rest| is_header(rest))
 }
 
 /// The format of a file without a header.

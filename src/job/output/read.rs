@@ -1,8 +1,6 @@
 //! Reads pictures of any program: PNG, EXR, and Netpbm's formats.
 
-use super::decoded::{
-    Incomplete, PIXEL_LIMIT, ReadPicture, Values, check_memory, note_on_alpha, pixel_count,
-};
+use super::decoded::{Incomplete, PIXEL_LIMIT, ReadPicture, Values, note_on_alpha, pixel_count};
 use super::{exr, netpbm, png};
 use crate::film::checkpoint;
 use crate::system::files::{self, ShownPath};
@@ -65,13 +63,12 @@ fn read_png(mut reader: impl BufRead + Seek, length: u64) -> Result<ReadPicture>
     let incomplete = |error| anyhow!("{error}; check whether the file is complete");
     let decoder = PngDecoder::with_limits(reader, limits).map_err(incomplete)?;
     let (width, height) = decoder.dimensions();
-    pixel_count(width, height)?;
+    pixel_count(width, height, 0)?;
     let least = decoder.total_bytes() / LARGEST_RATIO;
     ensure!(
         least <= length,
         "it has {length} bytes, but {width}x{height} pixels need at least {least}; check whether the file is complete"
     );
-    check_memory(width, height, 0)?;
     let image = DynamicImage::from_decoder(decoder).map_err(incomplete)?;
     let translucent = if image.color().has_alpha() {
         image.to_rgba16().pixels().filter(|pixel| pixel.0[3] != u16::MAX).count()

@@ -283,12 +283,6 @@ pub enum Outcome {
     Withdrawn,
 }
 
-impl From<Stats> for Outcome {
-    fn from(stats: Stats) -> Self {
-        Outcome::Added(stats)
-    }
-}
-
 impl Outcome {
     /// Statistics of the samples that were added.
     pub fn stats(self) -> Stats {

@@ -41,7 +41,7 @@ impl Renderer for Scripted {
         _: &Control,
     ) -> Result<Outcome, RenderError> {
         (self.0)(job, samples, film, &mut self.1)?;
-        Ok(Stats::default().into())
+        Ok(Outcome::Added(Stats::default()))
     }
 }
 

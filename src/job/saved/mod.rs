@@ -27,14 +27,9 @@ pub enum OpenError {
     /// The picture cannot be read or does not describe how it was made.
     #[error(transparent)]
     Picture(anyhow::Error),
-    /// The scene file or the recipe cannot be read or rendered, or the film does not have its size.
+    /// The scene file or the recipe cannot be read or rendered, or the film is of another size or picture.
     #[error(transparent)]
     Recipe(#[from] anyhow::Error),
-    #[error(
-        "{} is the film of another picture: {difference}; change the flags that differ, or name another film",
-        path.shown()
-    )]
-    OtherPicture { path: PathBuf, difference: String },
 }
 
 /// A saved file. A film's samples are not read yet.
@@ -141,11 +136,13 @@ impl Saved {
     /// Refuses a film of another job.
     ///
     /// # Errors
-    /// [`OpenError::OtherPicture`], and those of [`Saved::job`].
+    /// [`OpenError::Recipe`].
     pub fn check_same(&self, job: &RenderJob) -> Result<(), OpenError> {
-        let path = self.path.clone();
-        let refused = |difference| Err(OpenError::OtherPicture { path, difference });
-        difference(job, &self.job()?).map_or(Ok(()), refused)
+        let Some(difference) = difference(job, &self.job()?) else { return Ok(()) };
+        let path = self.path.shown();
+        Err(OpenError::Recipe(anyhow!(
+            "{path} is the film of another picture: {difference}; change the flags that differ, or name another film"
+        )))
     }
 
     /// Reads the film.
@@ -161,7 +158,7 @@ impl Saved {
 /// Reads the film of `job` in order to resume it.
 ///
 /// # Errors
-/// [`OpenError`]; [`OpenError::OtherPicture`] for the film of another job.
+/// [`OpenError`], also for the film of another job.
 pub fn resume(path: &Path, job: &RenderJob) -> Result<SavedFilm, OpenError> {
     let saved = open(path)?;
     saved.check_same(job)?;

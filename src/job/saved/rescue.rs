@@ -9,32 +9,23 @@ use std::path::{Path, PathBuf};
 /// Longest part of the picture's name in the file name, characters.
 const NAME_LENGTH: usize = 60;
 
-/// Saves the film of the picture `name` at the first place that works, and returns its path: the directories `first`,
+/// Saves the film at the first place that works, and returns its path: the directories `first`,
 /// then those for temporary files, for the state of programs, and the home directory.
 ///
 /// # Errors
 /// The loss, and why each place failed.
-pub fn rescue(
-    first: &[PathBuf],
-    name: &str,
-    film: &Film,
-    description: &Description,
-) -> Result<PathBuf, String> {
+pub fn rescue(first: &[PathBuf], film: &Film, description: &Description) -> Result<PathBuf, String> {
     let state = state_directory();
     // If this fails, writing the file will report it.
     let _ = state.as_ref().map(std::fs::create_dir_all);
     let others = [Some(temporary_directory()), state, home_directory()];
     let places: Vec<PathBuf> = first.iter().cloned().chain(others.into_iter().flatten()).collect();
-    keep_in(&places, name, film, description)
+    keep_in(&places, film, description)
 }
 
-fn keep_in(
-    places: &[PathBuf],
-    name: &str,
-    film: &Film,
-    description: &Description,
-) -> Result<PathBuf, String> {
-    let name: String = plain_name(name).chars().take(NAME_LENGTH).collect();
+fn keep_in(places: &[PathBuf], film: &Film, description: &Description) -> Result<PathBuf, String> {
+    let name = plain_name(description.get(key::SCENE).unwrap_or("film"));
+    let name: String = name.chars().take(NAME_LENGTH).collect();
     let save_in = |directory: &Path| -> io::Result<PathBuf> {
         let prefix = format!("weekender-{name}-");
         let file = tempfile::Builder::new().prefix(&prefix).suffix(".exr").tempfile_in(directory)?;
@@ -77,7 +68,8 @@ mod tests {
         film.record(0..6, 0).unwrap();
         let mut description = Description::new("r");
         description.set(key::SECONDS, 7.2);
-        let keep = |places: &[PathBuf]| keep_in(places, "a/b", &film, &description);
+        description.set(key::SCENE, "a/b");
+        let keep = |places: &[PathBuf]| keep_in(places, &film, &description);
 
         let path = keep(&[at("file"), at("made/deep"), at("unused")]).unwrap();
         assert_eq!(path.parent(), Some(at("made/deep").as_path()));
@@ -86,7 +78,9 @@ mod tests {
         let second = keep(&[at("made/deep")]).unwrap();
         assert!(second != path && second.exists() && path.exists());
         // A picture's name can be longer than any file name.
-        assert!(keep_in(&[at("made")], &"long".repeat(200), &film, &description).unwrap().exists());
+        let mut long = description.clone();
+        long.set(key::SCENE, "long".repeat(200));
+        assert!(keep_in(&[at("made")], &film, &long).unwrap().exists());
 
         let lost = keep(&[at("file"), at("file/x")]).unwrap_err();
         for part in ["lost", "6 per pixel", "7 s", "file/x"] {

@@ -300,7 +300,7 @@ impl Render {
     /// Adds the renderer's deferred samples to the film.
     pub fn finish_samples(&mut self, renderer: &mut dyn Renderer) -> Result<(), RenderError> {
         if self.requested != *self.film.samples() {
-            self.add(renderer, |renderer, _, film, _| renderer.finish(film).map(Outcome::from))?;
+            self.add(renderer, |renderer, _, film, _| renderer.finish(film).map(Outcome::Added))?;
         }
         if self.requested != *self.film.samples() {
             let reason = format!(

@@ -158,16 +158,16 @@ impl Renderer for Fake {
             return Ok(Outcome::Withdrawn);
         }
         if self.holds == 0 || !may_defer {
-            return self.add(range, film, cancel).map(Outcome::from);
+            return self.add(range, film, cancel).map(Outcome::Added);
         }
         std::thread::sleep(PAUSE);
         (self.on_pass)(&range, self.good_collections);
         self.held.push_back(range);
         if self.held.len() <= self.holds {
-            return Ok(Stats::default().into());
+            return Ok(Outcome::Added(Stats::default()));
         }
         let due = self.held.pop_front().unwrap();
-        self.add(due, film, cancel).map(Outcome::from)
+        self.add(due, film, cancel).map(Outcome::Added)
     }
 
     fn finish(&mut self, film: &mut Film) -> Result<Stats, RenderError> {

@@ -116,7 +116,7 @@ fn right_keys_in_wrong_places_are_told_where_they_belong() {
         assert!(words.iter().all(|words| message.contains(words)) && message.len() < 200, "{message}");
     }
     let message = refused(&format!("{CAMERA}[spheres]\nfile = \"s.csv\"\n"));
-    assert!(message.contains("write [[spheres]]") && message.contains("FILE.csv"), "{message}");
+    assert!(message.contains("[[spheres]] for each") && message.contains("FILE.csv"), "{message}");
     let message = refused(&format!("{CAMERA}colour = 3\n"));
     assert!(message.contains("unknown key `colour`, expected"), "{message}");
 }

@@ -96,7 +96,7 @@ fn a_wrong_table_is_refused_with_its_line() {
         ("x,y,z,radius,material", "x;y;z;radius;material", 1, &["separated by semicolons"]),
         ("x,y,z,radius,material", "x\ty\tz\tradius\tmaterial", 1, &["separated by tabs"]),
         ("x,y,z,radius,material", ",x,y,z,radius,material", 1, &["no name", "index"]),
-        ("0.25", "\"0,25\"", 3, &["spheres[1].y is \"0,25\"", "a number such as"]),
+        ("0.25", "\"0,25\"", 3, &["have 5 values", "has 6", "write a point"]),
         ("material", "x", 1, &["x,y,z,radius,x", "each once"]),
         ("x,y,z,radius,material\n", "", 1, &["0,-1000.5,0,1e3,ball", "must name its columns"]),
     ] {

@@ -89,7 +89,7 @@ fn a_merge_writes_each_file_once() {
         let merge = ["merge", "a.exr", "b.exr", "--out", one, "--out", other];
         refused_in(&directory, &merge, &[other, "give each file its own name"]);
     }
-    refused_in(&directory, &["merge", "a.exr", "./a.exr", "--out", "m.exr"], &["named twice"]);
+    refused_in(&directory, &["merge", "a.exr", "./a.exr", "--out", "m.exr"], &["both hold the samples"]);
 }
 
 #[test]

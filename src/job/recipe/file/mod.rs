@@ -31,6 +31,7 @@
 //!
 //! A recipe that is written and read back is the same to the bit, except for its name, which is that of the file.
 
+mod growing;
 mod named;
 mod read;
 mod table;

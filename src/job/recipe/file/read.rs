@@ -1,21 +1,21 @@
 //! From TOML to a recipe: serde checks the form, [`recipe_of`] the values.
 
+use super::growing::GrowingScene;
 use super::named;
-use super::table::{Table, added_material, text_of};
+use super::table::{Table, text_of};
 use crate::job::recipe::{DEFAULT_SAMPLES_PER_PIXEL, Recipe};
 use crate::job::render::{DEPTH_LIMIT, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::scene::animation::{FRAME_LIMIT, Keyframe};
-use crate::scene::{Camera, Material, Scene, Sky, missing_material};
+use crate::scene::{Camera, Material, Scene, Sky};
 use crate::stages::Rules;
 use crate::system::files::{self, ShownPath};
 use crate::system::memory;
 use anyhow::{Result, anyhow};
 use glam::DVec3;
 use serde::de::value::SeqAccessDeserializer;
-use serde::de::{Error as _, MapAccess, SeqAccess, Visitor};
+use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
-use std::borrow::Cow;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 use std::ops::Range;
 use std::path::Path;
@@ -78,7 +78,8 @@ fn read(source: &Source) -> Result<Recipe> {
     let Source { text, name, .. } = source;
     let outside_tables = text.split("'''").step_by(2).flat_map(str::bytes);
     let values = outside_tables.filter(|byte| b",=[{\n".contains(byte)).count() as u64;
-    let bytes = text.len() as u64 + VALUE_BYTES * values;
+    // A table is copied.
+    let bytes = 2 * text.len() as u64 + VALUE_BYTES * values;
     let remedy = "use a scene of fewer spheres, or close other programs";
     memory::check(|| format!("reading {name}"), bytes, remedy)?;
     let raw = toml::from_str(text).map_err(|error| {
@@ -156,14 +157,13 @@ fn in_its_place(error: &toml::de::Error) -> Option<String> {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RawFile<'a> {
+struct RawFile {
     /// A built-in scene, instead of sky, materials and spheres.
     scene: Option<Spanned<String>>,
     scene_mark: Option<Spanned<String>>,
     sky: Option<Spanned<RawSky>>,
     materials: Option<BTreeMap<Spanned<String>, Material>>,
-    #[serde(borrow)]
-    spheres: Option<Spanned<RawSpheres<'a>>>,
+    spheres: Option<Spanned<RawSpheres>>,
     camera: Spanned<RawCamera>,
     #[serde(default)]
     keyframes: Vec<Spanned<RawCamera>>,
@@ -212,39 +212,30 @@ struct RawSky {
     top: Option<Triple>,
 }
 
-enum RawSpheres<'a> {
+enum RawSpheres {
     Listed(Vec<Spanned<RawSphere>>),
     /// A table, or the name of its file.
-    Table(Cow<'a, str>),
+    Table(String),
 }
 
-impl<'de: 'a, 'a> Deserialize<'de> for RawSpheres<'a> {
+impl<'de> Deserialize<'de> for RawSpheres {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Either;
         impl<'de> Visitor<'de> for Either {
-            type Value = RawSpheres<'de>;
+            type Value = RawSpheres;
 
             fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-                formatter.write_str("a list of spheres, a table of them, or the name of its file")
+                formatter.write_str(
+                    "a list of spheres, [[spheres]] for each, or above the first [table] a table of them, spheres = \"FILE.csv\"",
+                )
             }
 
             fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Self::Value, A::Error> {
                 Vec::deserialize(SeqAccessDeserializer::new(list)).map(RawSpheres::Listed)
             }
 
-            fn visit_map<A: MapAccess<'de>>(self, _: A) -> Result<Self::Value, A::Error> {
-                Err(A::Error::custom(
-                    "[spheres] is one table; write [[spheres]] for each sphere, or spheres = \"FILE.csv\" above the \
-                     first [table]",
-                ))
-            }
-
-            fn visit_borrowed_str<E>(self, text: &'de str) -> Result<Self::Value, E> {
-                Ok(RawSpheres::Table(text.into()))
-            }
-
             fn visit_str<E>(self, text: &str) -> Result<Self::Value, E> {
-                Ok(RawSpheres::Table(text.to_owned().into()))
+                Ok(RawSpheres::Table(text.to_owned()))
             }
         }
         deserializer.deserialize_any(Either)
@@ -296,21 +287,16 @@ impl Source<'_> {
             }
             Some(scene) => self.builtin_scene(&scene, raw.scene_mark.as_ref())?,
             None => {
-                let (mut scene, mut index_of) =
-                    self.painted_scene(self.sky(raw.sky)?, raw.materials.unwrap_or_default())?;
-                let place = raw.spheres.as_ref().map(Spanned::span).unwrap_or_default();
+                let mut scene = self.painted_scene(self.sky(raw.sky)?, raw.materials.unwrap_or_default())?;
+                let line = raw.spheres.as_ref().map_or(1, |spheres| self.line_at(spheres.span().start).0);
                 match raw.spheres.map(Spanned::into_inner) {
-                    Some(RawSpheres::Listed(spheres)) => {
-                        self.add_listed(spheres, &mut scene, &mut index_of)?
-                    }
+                    Some(RawSpheres::Listed(spheres)) => self.add_listed(spheres, &mut scene)?,
                     Some(RawSpheres::Table(text)) => {
-                        let (line, _) = self.line_at(place.start);
-                        let table = Table::open(text, line, self.name, self.directory)?;
-                        table.add_to(&mut scene, &mut index_of)?;
+                        Table::open(text, line, self.name, self.directory)?.add_to(&mut scene)?;
                     }
                     None => {}
                 }
-                Arc::new(scene)
+                Arc::new(scene.scene)
             }
         };
         if raw.camera.get_ref().frame.is_some() {
@@ -343,17 +329,15 @@ impl Source<'_> {
     /// The built-in scene of this name. Refused if its mark differs from that in the file.
     fn builtin_scene(&self, name: &Spanned<String>, mark: Option<&Spanned<String>>) -> Result<Arc<Scene>> {
         let scene = Recipe::find(name.get_ref()).map_err(|error| self.refuse(name.span(), error))?.scene;
-        match mark {
-            Some(mark) if *mark.get_ref() != named::mark(&scene) => {
-                let reason = format!(
-                    "the built-in scene {:?} has changed since this file was made; use the version that made it, or remove \
+        if let Some(mark) = mark.filter(|mark| *mark.get_ref() != named::mark(&scene)) {
+            let reason = format!(
+                "the built-in scene {:?} has changed since this file was made; use the version that made it, or remove \
                  scene_mark to use the current scene",
-                    name.get_ref()
-                );
-                Err(self.refuse(mark.span(), reason))
-            }
-            _ => Ok(scene),
+                name.get_ref()
+            );
+            return Err(self.refuse(mark.span(), reason));
         }
+        Ok(scene)
     }
 
     fn sky(&self, raw: Option<Spanned<RawSky>>) -> Result<Sky> {
@@ -367,41 +351,31 @@ impl Source<'_> {
         Ok(sky)
     }
 
-    /// A scene without spheres, and the index of each of its materials.
+    /// A scene without spheres.
     fn painted_scene(
         &self,
         sky: Sky,
         materials: BTreeMap<Spanned<String>, Material>,
-    ) -> Result<(Scene, HashMap<String, usize>)> {
-        let mut scene = Scene { sky, ..Scene::default() };
+    ) -> Result<GrowingScene> {
+        let mut scene = GrowingScene::default();
+        scene.scene.sky = sky;
         // Restore the file's order; the map sorted them by name.
         let mut named: Vec<_> = materials.into_iter().collect();
         named.sort_by_key(|(name, _)| name.span().start);
-        let mut index_of = HashMap::with_capacity(named.len());
         for (name, material) in named {
             let place = name.span();
             let name = name.into_inner();
             material.validate(format_args!("materials.{name}")).map_err(|error| self.refuse(place, error))?;
-            index_of.insert(name.clone(), scene.add_material(name, material));
+            scene.add_material(name, material);
         }
-        Ok((scene, index_of))
+        Ok(scene)
     }
 
-    fn add_listed(
-        &self,
-        spheres: Vec<Spanned<RawSphere>>,
-        scene: &mut Scene,
-        index_of: &mut HashMap<String, usize>,
-    ) -> Result<()> {
-        scene.spheres.reserve_exact(spheres.len());
-        for (index, sphere) in spheres.into_iter().enumerate() {
+    fn add_listed(&self, spheres: Vec<Spanned<RawSphere>>, scene: &mut GrowingScene) -> Result<()> {
+        scene.scene.spheres.reserve_exact(spheres.len());
+        for sphere in spheres {
             let place = sphere.span();
-            let RawSphere { center: Triple(center), radius, material } = sphere.into_inner();
-            let material = material_of(material, index, scene, index_of)
-                .map_err(|reason| self.refuse(place.clone(), reason))?;
-            scene.add_sphere(center, radius, material);
-            let validated = scene.spheres[index].validate(index, scene.materials.len());
-            validated.map_err(|error| self.refuse(place, error))?;
+            add_sphere(sphere.into_inner(), scene).map_err(|reason| self.refuse(place, reason))?;
         }
         Ok(())
     }
@@ -409,14 +383,12 @@ impl Source<'_> {
     /// The camera. `base` has the values of missing keys; without it, some keys are required.
     fn camera(&self, raw: &Spanned<RawCamera>, base: Option<&Camera>) -> Result<Camera> {
         let (place, raw) = (raw.span(), raw.get_ref());
-        let missing = match raw {
-            _ if base.is_some() => None,
-            RawCamera { look_from: None, .. } => Some("look_from"),
-            RawCamera { look_at: None, .. } => Some("look_at"),
-            RawCamera { vfov_degrees: None, .. } => Some("vfov_degrees"),
-            _ => None,
-        };
-        if let Some(key) = missing {
+        let required = [
+            ("look_from", raw.look_from.is_some()),
+            ("look_at", raw.look_at.is_some()),
+            ("vfov_degrees", raw.vfov_degrees.is_some()),
+        ];
+        if let Some((key, _)) = required.iter().find(|(_, is_there)| base.is_none() && !is_there) {
             return Err(self.refuse(place, format!("missing key `{key}`")));
         }
         let base = base.unwrap_or(&Camera::BOOK);
@@ -455,27 +427,22 @@ impl Source<'_> {
     }
 }
 
-/// The index of a sphere's material.
-fn material_of(
-    value: toml::Value,
-    sphere: usize,
-    scene: &mut Scene,
-    index_of: &mut HashMap<String, usize>,
-) -> Result<usize, String> {
-    let what = format_args!("spheres[{sphere}].material");
-    match value {
-        toml::Value::String(name) => index_of.get(&name).copied().ok_or_else(|| {
-            let error = missing_material(sphere, &name);
-            error.to_string()
-        }),
+fn add_sphere(sphere: RawSphere, scene: &mut GrowingScene) -> Result<(), String> {
+    let RawSphere { center: Triple(center), radius, material } = sphere;
+    let index = scene.scene.spheres.len();
+    let what = format_args!("spheres[{index}].material");
+    let material = match material {
+        toml::Value::String(name) => scene.material(&name)?,
         table @ toml::Value::Table(_) => {
             let material = Material::deserialize(table);
-            let material = material.map_err(|error| format!("{what}: {}", toml_message(error)))?;
-            added_material(sphere, material, scene, index_of)
+            scene.own_material(material.map_err(|error| format!("{what}: {}", toml_message(error)))?)?
         }
-        other => Err(format!(
-            "{what} is {other}, but must be a material's name or a table such as {{ kind = \"metal\", albedo = [0.8, 0.8, \
-             0.8] }}"
-        )),
-    }
+        other => {
+            return Err(format!(
+                "{what} is {other}, but must be a material's name or a table such as {{ kind = \"metal\", albedo = [0.8, 0.8, \
+                 0.8] }}"
+            ));
+        }
+    };
+    scene.add_sphere(center, radius, material)
 }

@@ -1,14 +1,13 @@
 //! The spheres of a scene of many as a table: CSV, in a file of its own or in a string of the scene file. TOML takes 3 kB
 //! of memory per sphere.
 
-use crate::scene::{Material, Scene, Sphere, missing_material};
+use super::growing::GrowingScene;
+use crate::scene::{Scene, Sphere};
 use crate::system::files::{self, ShownPath};
 use crate::system::memory;
 use anyhow::{Context, Result, anyhow};
 use glam::DVec3;
 use serde::Deserialize;
-use std::borrow::Cow;
-use std::collections::HashMap;
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -22,8 +21,8 @@ const RADIUS: usize = 3;
 const MATERIAL: usize = 4;
 
 /// The text of a table.
-pub(super) struct Table<'a> {
-    text: Cow<'a, str>,
+pub(super) struct Table {
+    text: String,
     /// The file that it is in, and the lines of that file before it.
     file: String,
     lines_before: usize,
@@ -44,10 +43,10 @@ pub(super) fn text_of(path: &Path, bytes: Vec<u8>) -> anyhow::Result<String> {
     String::from_utf8(bytes).map_err(|_| anyhow!("cannot read {}: it {found}", path.shown()))
 }
 
-impl<'a> Table<'a> {
+impl Table {
     /// The table in a `value` of several lines at a `line` of the scene file `name`, or in the file of that name in
     /// `directory`.
-    pub fn open(value: Cow<'a, str>, line: usize, name: &str, directory: Option<&Path>) -> Result<Self> {
+    pub fn open(value: String, line: usize, name: &str, directory: Option<&Path>) -> Result<Self> {
         if value.contains('\n') {
             return Ok(Table { text: value, file: name.to_owned(), lines_before: line });
         }
@@ -56,7 +55,7 @@ impl<'a> Table<'a> {
                 "{name}:{line}: spheres names the file {value:?}, which only a scene file can do; put its table here"
             )
         })?;
-        let path = directory.join(&*value);
+        let path = directory.join(&value);
         let read = files::read(&path, "a table of spheres", LENGTH_LIMIT).map_err(Into::into);
         let text = read.and_then(|bytes| text_of(&path, bytes));
         let mut text = text.map_err(|error| anyhow!("{name}:{line}: {error:#}"))?;
@@ -64,51 +63,39 @@ impl<'a> Table<'a> {
             // Line ends of old Macintosh programs.
             text = text.replace('\r', "\n");
         }
-        Ok(Table { text: text.into(), file: path.shown(), lines_before: 0 })
+        Ok(Table { text, file: path.shown(), lines_before: 0 })
     }
 
-    /// Adds its spheres to a scene that has the materials `index_of`.
-    pub fn add_to(&self, scene: &mut Scene, index_of: &mut HashMap<String, usize>) -> Result<()> {
+    /// Adds its spheres to a scene that has their materials.
+    pub fn add_to(&self, scene: &mut GrowingScene) -> Result<()> {
         let at =
             |line: usize, reason: String| anyhow!("{}:{}: {reason}", self.file, self.lines_before + line);
         let rows = self.text.bytes().filter(|byte| *byte == b'\n').count();
         let remedy = "use a table of fewer spheres, or close other programs";
         memory::check(|| format!("reading {}", self.file), (rows * size_of::<Sphere>()) as u64, remedy)?;
-        scene.spheres.reserve_exact(rows);
+        scene.scene.spheres.reserve_exact(rows);
         let text = self.text.trim_start_matches('\u{feff}');
         let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
         let (line, header) = lines.next().unwrap_or((1, ""));
-        let mut cells = Cells::new();
-        let columns = columns_of(&cells.of(header)).map_err(|reason| at(line, reason))?;
-        let mut coloured = HashMap::new();
+        let columns = columns_of(&values_of(header)).map_err(|reason| at(line, reason))?;
         for (line, row) in lines {
-            if row.matches('"').count() % 2 == 1 {
-                return Err(at(
-                    line,
-                    format!("the row {row:?} has a quote that is not closed; close it or remove it"),
-                ));
-            }
-            let sphere = sphere_of(&cells.of(row), &columns, scene, index_of, &mut coloured);
-            scene.spheres.push(sphere.map_err(|reason| at(line, reason))?);
+            add_row(&values_of(row), &columns, scene).map_err(|reason| at(line, reason))?;
         }
         Ok(())
     }
 }
 
-/// The sphere of a row, whose values are in `columns`. `coloured` has the materials of colours.
-fn sphere_of(
+/// Adds the sphere of a row, whose values are in `columns`.
+fn add_row(
     row: &[&str],
     columns: &[Option<usize>; COLUMNS.len()],
-    scene: &mut Scene,
-    index_of: &mut HashMap<String, usize>,
-    coloured: &mut HashMap<[u64; 3], usize>,
-) -> Result<Sphere, String> {
-    let (index, found, count) = (scene.spheres.len(), row.len(), columns.iter().flatten().count());
+    scene: &mut GrowingScene,
+) -> Result<(), String> {
+    let (index, found, count) = (scene.scene.spheres.len(), row.len(), columns.iter().flatten().count());
     if found != count {
-        let more = if found == MOST_VALUES { " or more" } else { "" };
         return Err(format!(
-            "spheres[{index}] should have {count} values, one for each column, and has {found}{more}; separate the \
-             values by commas, and write a point in a number"
+            "spheres[{index}] should have {count} values, one for each column, and has {found}; separate the values by \
+             commas, and write a point in a number and no comma in a name"
         ));
     }
     let texts = columns.map(|column| row.get(column?).copied());
@@ -123,71 +110,15 @@ fn sphere_of(
     };
     let (center, radius) = (vector(0)?, number(RADIUS)?);
     let material = match texts[MATERIAL] {
-        Some(name) => index_of.get(name).copied().ok_or_else(|| missing_material(index, name).to_string())?,
-        None => {
-            let albedo = vector(MATERIAL + 1)?;
-            let bits = albedo.to_array().map(f64::to_bits);
-            let material = match coloured.get(&bits) {
-                Some(known) => *known,
-                None => added_material(index, Material::Lambertian { albedo }, scene, index_of)?,
-            };
-            coloured.insert(bits, material);
-            material
-        }
+        Some(name) => scene.material(name)?,
+        None => scene.matte(vector(MATERIAL + 1)?)?,
     };
-    let sphere = Sphere { center, radius, material };
-    sphere.validate(index, scene.materials.len()).map_err(|error| error.to_string())?;
-    Ok(sphere)
+    scene.add_sphere(center, radius, material)
 }
 
-/// Adds the own material of a sphere, which gets a unique name, and returns its index.
-pub(super) fn added_material(
-    sphere: usize,
-    material: Material,
-    scene: &mut Scene,
-    index_of: &mut HashMap<String, usize>,
-) -> Result<usize, String> {
-    material.validate(format_args!("spheres[{sphere}].material")).map_err(|error| error.to_string())?;
-    let mut name = format!("sphere-{sphere}");
-    while index_of.contains_key(&name) {
-        name.push('*');
-    }
-    let index = scene.add_material(name.clone(), material);
-    index_of.insert(name, index);
-    Ok(index)
-}
-
-/// Reads rows.
-struct Cells {
-    reader: csv_core::Reader,
-    text: Vec<u8>,
-    /// Where each value ends in the text.
-    ends: [usize; MOST_VALUES],
-}
-
-/// More values a row never has.
-const MOST_VALUES: usize = 32;
-
-impl Cells {
-    fn new() -> Self {
-        Cells { reader: csv_core::Reader::new(), text: Vec::new(), ends: [0; MOST_VALUES] }
-    }
-
-    /// The values of a row.
-    fn of(&mut self, row: &str) -> Vec<&str> {
-        self.reader.reset();
-        self.text.resize(self.text.len().max(row.len() + 1), 0);
-        let (_, _, length, count) = self.reader.read_record(row.as_bytes(), &mut self.text, &mut self.ends);
-        let (text, ends) = (&mut self.text[length..], &mut self.ends[count..]);
-        let (_, _, _, last) = self.reader.read_record(&[], text, ends);
-        let ends = &self.ends[..count + last];
-        let value = |(start, end): (&usize, &usize)| {
-            let value = std::str::from_utf8(&self.text[*start..*end]).unwrap_or_default().trim();
-            // A quote after a space is not one of CSV.
-            value.strip_prefix('"').and_then(|value| value.strip_suffix('"')).unwrap_or(value)
-        };
-        [0].iter().chain(ends).zip(ends).map(value).collect()
-    }
+/// The values of a row, each of which may be quoted. No value has a comma.
+fn values_of(row: &str) -> Vec<&str> {
+    row.split(',').map(|value| value.trim().trim_matches('"').trim()).collect()
 }
 
 /// For each of [`COLUMNS`], which value of a row it is.

@@ -5,40 +5,24 @@ use super::table;
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderSettings;
 use crate::scene::animation::Keyframe;
-use crate::scene::{Camera, Material, NamedMaterial, Parameter, Scene, Sphere, toml_key, toml_string};
+use crate::scene::{Camera, NamedMaterial, Parameter, Scene, Sphere, toml_key, toml_string};
 use crate::stages::Rules;
 use glam::DVec3;
 
-/// Above this many spheres, each takes one line, and they come first in the file.
-const LONG_FORM_LIMIT: usize = 40;
-
-/// From this many spheres on, they are a table.
-const TABLE_FROM: usize = 10_000;
+/// More spheres than these are a table, which comes first in the file.
+const LIST_LIMIT: usize = 40;
 
 /// The recipe as a scene file, without its name. Numbers have the fewest digits that give the same bits again.
 ///
 /// A recipe that is not valid is written as it is; reading it back reports what is wrong.
 pub fn to_toml(recipe: &Recipe) -> String {
     let Scene { materials, spheres, sky } = &*recipe.scene;
-    let is_long = spheres.len() > LONG_FORM_LIMIT;
-    let table = (spheres.len() >= TABLE_FROM).then(|| table::to_value(&recipe.scene)).flatten();
-    let values = |sphere: &Sphere| {
-        let material = materials.get(sphere.material).map_or("", |named| &named.name);
-        (vector(sphere.center), number(sphere.radius), toml_string(material))
-    };
+    let table = (spheres.len() > LIST_LIMIT).then(|| table::to_value(&recipe.scene)).flatten();
     let mut text = String::new();
-    if is_long {
-        text.push_str("# Camera, render settings, sky and materials follow the spheres.\nspheres = ");
-    }
-    if let Some(table) = table {
-        text += &table;
-        text.push_str("\n\n");
-    } else if is_long {
-        text.push_str("[\n");
-        for (center, radius, material) in spheres.iter().map(values) {
-            text += &format!("  {{ center = {center}, radius = {radius}, material = {material} }},\n");
-        }
-        text.push_str("]\n\n");
+    if let Some(table) = &table {
+        text += "# Camera, render settings, sky and materials follow the spheres.\nspheres = ";
+        text += table;
+        text += "\n\n";
     }
     text += &settings(recipe);
     let (bottom, top) = (vector(sky.bottom), vector(sky.top));
@@ -47,10 +31,13 @@ pub fn to_toml(recipe: &Recipe) -> String {
         text.push_str("\n[materials]\n");
         text.extend(materials.iter().map(material_line));
     }
-    if !is_long {
-        for (center, radius, material) in spheres.iter().map(values) {
-            text += &format!("\n[[spheres]]\ncenter = {center}\nradius = {radius}\nmaterial = {material}\n");
-        }
+    if table.is_some() {
+        return text;
+    }
+    for Sphere { center, radius, material } in spheres {
+        let (center, radius) = (vector(*center), number(*radius));
+        let material = toml_string(materials.get(*material).map_or("", |named| &named.name));
+        text += &format!("\n[[spheres]]\ncenter = {center}\nradius = {radius}\nmaterial = {material}\n");
     }
     text
 }
@@ -102,16 +89,12 @@ fn rules(rules: &Rules) -> String {
 }
 
 fn material_line(NamedMaterial { name, material }: &NamedMaterial) -> String {
-    format!("{} = {}\n", toml_key(name), inline(material))
-}
-
-fn inline(material: &Material) -> String {
     let keys = material.parameters().into_iter().map(|(key, parameter)| match parameter {
         Parameter::Number(value) => format!("{key} = {}", number(value)),
         Parameter::Colour(colour) => format!("{key} = {}", vector(colour)),
     });
     let keys = keys.collect::<Vec<_>>().join(", ");
-    format!("{{ kind = \"{}\", {keys} }}", material.kind())
+    format!("{} = {{ kind = \"{}\", {keys} }}\n", toml_key(name), material.kind())
 }
 
 fn vector(v: DVec3) -> String {
