@@ -87,7 +87,12 @@ async function keepFilm(id, name) {
   writeFileSync(join(folder, file), Buffer.from(await page.evaluate(readFilm), "base64"));
   // The text is written with the picture.
   await until("the picture", async () => (await bar(id)).includes(`${own.samples} of ${own.samples}`));
-  const rgba = await panel(id).locator("canvas").first().evaluate((canvas) => [...canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data]);
+  const rgba = await panel(id).locator("canvas").first().evaluate((canvas) => {
+    // A copy, as the page's own canvas is not made for being read.
+    const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", { willReadFrequently: true });
+    copy.drawImage(canvas, 0, 0);
+    return [...copy.getImageData(0, 0, canvas.width, canvas.height).data];
+  });
   seen.films[name] = { file, id, rgba, settings: own };
 }
 

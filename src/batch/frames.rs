@@ -7,6 +7,7 @@ use super::studio::Studio;
 use super::summary::with_recipe;
 use super::{BatchOptions, Line, Output, check_before, ended, report};
 use crate::film::{SOFTWARE, key};
+use crate::job::output::OutputFormat;
 use crate::job::saved::is_whole_frame;
 use crate::progressive::describe::{counted, seconds};
 use crate::scene::animation::CameraPath;
@@ -173,6 +174,14 @@ impl<'a> Run<'a> {
         let Ok(files) = Files::lock(options, Duration::ZERO) else { return Ok(false) };
         if is_whole_frame(&file, &files.options.recipe, SOFTWARE, (key::UNTIL, &until)) {
             return Ok(true);
+        }
+        let is_undescribed = |Output { path, format, .. }: &Output| {
+            matches!(format, OutputFormat::P6 | OutputFormat::Pfm) && path.exists()
+        };
+        if files.options.outputs.iter().any(is_undescribed) {
+            self.screen.warn(
+                "frames that are there are rendered again: PPM and PFM cannot record how a frame was made, as PNG and EXR do",
+            );
         }
         let (begin, done, count) = (Instant::now(), self.done.len(), self.options.frames.len());
         let per_frame = self.rendering.checked_div(self.rendered as u32);

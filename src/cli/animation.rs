@@ -57,12 +57,10 @@ fn names(out: &mut PathBuf, format: OutputFormat) -> Result<FrameNames> {
     if out.is_dir() || (out.extension().is_none() && !is_pattern) {
         out.push(format!("frame-####{}", format.ending()));
     }
-    // Others cannot record how a frame was made.
-    let is_recorded = matches!(OutputFormat::from_path(out), Ok(OutputFormat::Png | OutputFormat::Exr));
-    FrameNames::of_pattern(out).filter(|_| named != STANDARD && is_recorded).with_context(|| {
+    FrameNames::of_pattern(out).filter(|_| named != STANDARD && OutputFormat::from_path(out).is_ok()).with_context(|| {
         format!(
-            "--out is {named}, but an animation is a directory of PNG or EXR pictures, or a pattern with a single row of # \
-             such as turn-####.png; other programs, such as ffmpeg, turn them into a video"
+            "--out is {named}, but an animation is a directory of pictures, or a pattern with a single row of # such as \
+             turn-####.png; other programs, such as ffmpeg, turn them into a video"
         )
     })
 }

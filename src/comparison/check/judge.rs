@@ -581,7 +581,7 @@ fn is_same(a: &Hypothesis, b: &Hypothesis) -> bool {
 }
 
 /// The right pictures on which mistakes are tried: of the nearest section the nearest one, the plainest that is written in the
-/// same way, and the book's; of each further section one.
+/// same way, the book's, and that of an older edition; of each further section one.
 fn bases(nearest: &[Hypothesis], ranked: &[(f64, Hypothesis)]) -> Vec<Hypothesis> {
     let mut bases: Vec<Hypothesis> = Vec::new();
     let rights = || ranked.iter().filter(|(_, it)| it.is_right() && is_simple(it));
@@ -590,14 +590,21 @@ fn bases(nearest: &[Hypothesis], ranked: &[(f64, Hypothesis)]) -> Vec<Hypothesis
             continue;
         }
         let of_stage = || rights().filter(|(_, it)| it.stage.id == stage);
-        let book = || of_stage().map(|(_, it)| it).find(|it| it.rows.is_empty());
+        let of_book = |it: &Hypothesis| it.rows.is_empty();
+        let of_edition = |it: &Hypothesis| it.rows.iter().any(|row| row.id.starts_with("edition"));
+        let any = |is: &dyn Fn(&Hypothesis) -> bool| of_stage().map(|(_, it)| it).find(|it| is(it));
         let own: Vec<&Hypothesis> = if bases.is_empty() {
             let all = || nearest.iter().chain(rights().map(|(_, it)| it));
             let first = all().find(|it| it.stage.id == stage && is_simple(it));
             let as_written = of_stage()
                 .map(|(_, it)| it)
                 .filter(|it| first.is_some_and(|first| first.written == it.written));
-            first.into_iter().chain(as_written.min_by_key(|it| it.rows.len())).chain(book()).collect()
+            first
+                .into_iter()
+                .chain(as_written.min_by_key(|it| it.rows.len()))
+                .chain(any(&of_book))
+                .chain(any(&of_edition))
+                .collect()
         } else {
             // An edition must be nearer than the book.
             let key = |(misfit, it): &(f64, Hypothesis)| misfit * if it.rows.is_empty() { 1.0 } else { 1.5 };

@@ -144,11 +144,16 @@ impl Random {
         [a, b].map(|bits| f64::from(bits) / 4_294_967_296.0)
     }
 
+    /// Marsaglia's method, which needs neither sines nor cosines.
     pub fn unit_vector(&mut self) -> DVec3 {
-        let [u, v] = self.pair();
-        let z = 1.0 - 2.0 * u;
-        let [x, y] = on_circle((1.0 - z * z).max(0.0).sqrt(), v);
-        DVec3::new(x, y, z)
+        loop {
+            let [x, y] = self.pair().map(|x| 2.0 * x - 1.0);
+            let square = x * x + y * y;
+            if square < 1.0 {
+                let stretch = 2.0 * (1.0 - square).sqrt();
+                return DVec3::new(stretch * x, stretch * y, 1.0 - 2.0 * square);
+            }
+        }
     }
 
     pub fn in_unit_sphere(&mut self) -> DVec3 {

@@ -223,11 +223,12 @@ impl Levels {
         /// From here on, rounding is noise, and not a staircase.
         const NOISE: f64 = 1.5;
         let (real, step) = (self.real(linear), self.step(linear));
+        // In the dark, even a little noise has many levels.
+        if deviation > NOISE * step && linear + 3.0 * deviation < self.most() {
+            return [linear, deviation * deviation + step * step / 12.0];
+        }
         let deviation = deviation / step;
         let reach = 5.0 * deviation;
-        if deviation > NOISE && real + 3.0 * deviation < 256.0 {
-            return [linear, step * step * (deviation * deviation + 1.0 / 12.0)];
-        }
         let [first, last] = [real - reach, real + reach].map(|end| end.clamp(0.0, 255.0) as usize);
         if first == last {
             return [self.middles[first], 0.0];

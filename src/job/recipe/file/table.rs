@@ -77,9 +77,11 @@ impl Table {
         let text = self.text.trim_start_matches('\u{feff}');
         let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
         let (line, header) = lines.next().unwrap_or((1, ""));
-        let columns = columns_of(&values_of(header)).map_err(|reason| at(line, reason))?;
+        let columns =
+            values_of(header).and_then(|names| columns_of(&names)).map_err(|reason| at(line, reason))?;
         for (line, row) in lines {
-            add_row(&values_of(row), &columns, scene).map_err(|reason| at(line, reason))?;
+            let added = values_of(row).and_then(|row| add_row(&row, &columns, scene));
+            added.map_err(|reason| at(line, reason))?;
         }
         Ok(())
     }
@@ -95,7 +97,7 @@ fn add_row(
     if found != count {
         return Err(format!(
             "spheres[{index}] should have {count} values, one for each column, and has {found}; separate the values by \
-             commas, and write a point in a number and no comma in a name"
+             commas, and write a point in a number"
         ));
     }
     let texts = columns.map(|column| row.get(column?).copied());
@@ -116,9 +118,18 @@ fn add_row(
     scene.add_sphere(center, radius, material)
 }
 
-/// The values of a row, each of which may be quoted. No value has a comma.
-fn values_of(row: &str) -> Vec<&str> {
-    row.split(',').map(|value| value.trim().trim_matches('"').trim()).collect()
+/// The values of a row, each of which may be quoted, as one with a comma must be.
+fn values_of(row: &str) -> Result<Vec<&str>, String> {
+    let mut is_quoted = false;
+    let values = row.split(|character| {
+        is_quoted ^= character == '"';
+        character == ',' && !is_quoted
+    });
+    let values = values.map(|value| value.trim().trim_matches('"').trim()).collect();
+    if is_quoted {
+        return Err(format!("the row {row:?} has a quote that is not closed; close it or remove it"));
+    }
+    Ok(values)
 }
 
 /// For each of [`COLUMNS`], which value of a row it is.
