@@ -118,7 +118,10 @@ fn add_row(
 
 /// The values of a row, each of which may be quoted. No value has a comma.
 fn values_of(row: &str) -> Vec<&str> {
-    row.split(',').map(|value| value.trim().trim_matches('"').trim()).collect()
+    fn unquoted(value: &str) -> Option<&str> {
+        Some(value.strip_prefix('"')?.strip_suffix('"')?.trim())
+    }
+    row.split(',').map(str::trim).map(|value| unquoted(value).unwrap_or(value)).collect()
 }
 
 /// For each of [`COLUMNS`], which value of a row it is.
