@@ -20,8 +20,8 @@ use std::time::Duration;
 /// The files of a render. No other run may write its films.
 pub(super) struct Files {
     pub options: BatchOptions,
-    /// Each output, locked; those that are films hold one.
-    locked: Vec<Mutex<LockedFilm>>,
+    /// The film of each output, if it has one.
+    films: Vec<Option<Mutex<LockedFilm>>>,
     /// Samples per pixel of the film that the render continues.
     pub held_before: u64,
     /// Tracing time of these samples, if known.
@@ -40,14 +40,17 @@ pub(super) struct Written {
 }
 
 impl Files {
-    /// Locks the outputs of a render. A film to be resumed must be read after this.
+    /// Locks the films of a render, and the file of a frame. A film to be resumed must be read after this.
     ///
     /// # Errors
     /// [`Failure::Input`] if another run writes one of them for as long as `patience`.
     pub fn lock(options: BatchOptions, patience: Duration) -> Result<Files, Failure> {
-        let lock = |output: &Output| LockedFilm::new(&output.path, patience).map(Mutex::new);
-        let locked = options.outputs.iter().map(lock).collect::<Result<_, _>>().map_err(Failure::input)?;
-        Ok(Files { options, locked, held_before: 0, seconds_before: Some(0.0) })
+        let lock = |output: &Output| {
+            let is_locked = output.format == OutputFormat::Exr || options.frame.is_some();
+            is_locked.then(|| LockedFilm::new(&output.path, patience).map(Mutex::new)).transpose()
+        };
+        let films = options.outputs.iter().map(lock).collect::<Result<_, _>>().map_err(Failure::input)?;
+        Ok(Files { options, films, held_before: 0, seconds_before: Some(0.0) })
     }
 
     /// Checks the films that a render would replace. Returns warnings for the user.
@@ -55,14 +58,14 @@ impl Files {
     /// # Errors
     /// [`Failure::Input`] if the checkpoint is a file that the render does not continue.
     pub fn check(&mut self, resumed: Option<&SavedFilm>) -> Result<Vec<String>, Failure> {
-        let Files { options, locked, held_before, seconds_before } = self;
+        let Files { options, films, held_before, seconds_before } = self;
         if let Some(saved) = resumed {
             (*held_before, *seconds_before) = (saved.film.sample_count(), saved.seconds);
         }
         let resumed = resumed.map(|saved| &saved.film);
         let mut warnings = Vec::new();
-        let is_film = |(output, _): &(&Output, _)| output.format == OutputFormat::Exr;
-        for (Output { path, is_checkpoint, .. }, file) in options.outputs.iter().zip(locked).filter(is_film) {
+        for (Output { path, is_checkpoint, .. }, file) in options.outputs.iter().zip(films) {
+            let Some(file) = file else { continue };
             let file = file.get_mut().unwrap_or_else(PoisonError::into_inner);
             let found = Replaced::at(path, &file::to_picture_toml(&options.recipe));
             let Some(found) = found else { continue };
@@ -84,7 +87,7 @@ impl Files {
 
     /// Writes the checkpoint. Returns a note for the user if the file already holds more.
     pub fn save_checkpoint(&self, film: &Film, status: &Status) -> Result<Option<String>, String> {
-        let mut outputs = self.options.outputs.iter().zip(&self.locked);
+        let mut outputs = self.options.outputs.iter().zip(&self.films);
         let Some(checkpoint) = outputs.find(|(output, _)| output.is_checkpoint) else { return Ok(None) };
         let description = self.described(film, &status.of_film(film, self.held_before));
         let note = self.save(checkpoint, (film, None), &description)?;
@@ -95,12 +98,12 @@ impl Files {
     /// Writes a film with its denoised picture, or either as a picture. Returns a note for the user.
     fn save(
         &self,
-        (Output { path, format, .. }, file): (&Output, &Mutex<LockedFilm>),
+        (Output { path, format, .. }, file): (&Output, &Option<Mutex<LockedFilm>>),
         (film, denoised): (&Film, Option<&Film>),
         description: &Description,
     ) -> Result<Option<String>, String> {
         let write = || {
-            if *format == OutputFormat::Exr {
+            if let Some(file) = file.as_ref().filter(|_| *format == OutputFormat::Exr) {
                 let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
                 return file.save(film, denoised, description).map_err(|error| error.to_string());
             }
@@ -128,7 +131,7 @@ impl Files {
             of_picture.set(key::DENOISED, error.words());
         }
         let mut is_film_kept = false;
-        for (output, file) in options.outputs.iter().zip(&self.locked) {
+        for (output, file) in options.outputs.iter().zip(&self.films) {
             say(&output.path);
             let picture = denoised.as_ref().map(|denoised| &denoised.film).filter(|_| !output.is_checkpoint);
             let description = if output.is_checkpoint { &description } else { &of_picture };
