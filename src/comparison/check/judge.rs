@@ -216,7 +216,7 @@ impl Search<'_> {
         if let Some(finding) = self.explained(&right, enough) {
             return Ok((finding, Vec::new()));
         }
-        let bases = bases(&nearest, &ranked);
+        let bases = bases(&nearest, &ranked, is_near);
         let right = if is_near { right } else { self.compared(&bases[0])? };
         Ok((self.finding(right, None, Vec::new()), bases))
     }
@@ -581,8 +581,8 @@ fn is_same(a: &Hypothesis, b: &Hypothesis) -> bool {
 }
 
 /// The right pictures on which mistakes are tried: of the nearest section the nearest one, the plainest that is written in the
-/// same way, the book's, and that of an older edition; of each further section one.
-fn bases(nearest: &[Hypothesis], ranked: &[(f64, Hypothesis)]) -> Vec<Hypothesis> {
+/// same way, the book's, and, if that is the nearest but not near, an older edition's; of each further section one.
+fn bases(nearest: &[Hypothesis], ranked: &[(f64, Hypothesis)], is_near: bool) -> Vec<Hypothesis> {
     let mut bases: Vec<Hypothesis> = Vec::new();
     let rights = || ranked.iter().filter(|(_, it)| it.is_right() && is_simple(it));
     for stage in nearest.iter().chain(rights().map(|(_, it)| it)).map(|it| it.stage.id) {
@@ -599,11 +599,12 @@ fn bases(nearest: &[Hypothesis], ranked: &[(f64, Hypothesis)]) -> Vec<Hypothesis
             let as_written = of_stage()
                 .map(|(_, it)| it)
                 .filter(|it| first.is_some_and(|first| first.written == it.written));
+            let edition = any(&of_edition).filter(|_| !is_near && first.is_some_and(of_book));
             first
                 .into_iter()
                 .chain(as_written.min_by_key(|it| it.rows.len()))
                 .chain(any(&of_book))
-                .chain(any(&of_edition))
+                .chain(edition)
                 .collect()
         } else {
             // An edition must be nearer than the book.
